@@ -1,0 +1,43 @@
+// The project's own readers and writers of meshes; they keep the order of the vertices.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/mesh.h"
+
+namespace icloth {
+
+/// Object of a mesh file: a `g` group of an OBJ, or the whole file.
+struct MeshGroup {
+  std::string name;
+  Index first_face = 0, face_count = 0;
+};
+
+struct MeshFile {
+  TriangleMesh mesh;
+  std::vector<MeshGroup> groups;  ///< at least one
+};
+
+/// OBJ or PLY by extension; polygons are cut into fans. Throws InputError naming file, line and
+/// value: missing or truncated file, non-finite number, index out of range, no triangles.
+MeshFile read_mesh(const std::string& path);
+
+/// Throws InputError naming the first zero-area face, vertex used by no face, or repeated index.
+void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
+
+/// PC2 point cache: frames of positions. `vertices` is the expected count (checked before memory
+/// is taken). Throws InputError.
+std::vector<std::vector<Vec3f>> read_pc2(const std::string& path, Index vertices);
+
+struct NamedMesh {
+  std::string name;                ///< "cloth:NAME" or "obstacle:NAME"
+  std::span<const Vec3f> positions;
+  std::span<const Triangle> faces;  ///< indices into positions
+};
+
+/// One group per object, coordinates with 9 significant digits; written beside and renamed.
+void write_obj(const std::string& path, std::span<const NamedMesh> objects);
+
+}  // namespace icloth

@@ -1,0 +1,60 @@
+// What a step tells about itself. Names are those of the statistics files and the panels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "kernels/platform.h"
+
+namespace icloth {
+
+/// Pair of elements that still collides. Vertices are global (cloths first, then obstacles).
+struct OffendingPair {
+  bool edge_edge = false;        ///< false: vertices[0] against the face of the other three
+  std::array<Index, 4> vertices{};  ///< vf: vertex, face; ee: a0 a1 b0 b1
+};
+
+struct StepReport {
+  std::int64_t step = 0;
+  double time = 0;  ///< at the end of the step [s]
+  double dt = 0;    ///< [s]
+  std::int64_t substeps = 1, retries = 0;
+  double ms_total = 0, ms_proximity = 0, ms_implicit = 0, ms_broad_phase = 0, ms_ccd = 0,
+         ms_impact_zones = 0, ms_other = 0;
+  std::int64_t proximity_pairs = 0, candidate_pairs = 0, elementary_tests = 0, impacts_first = 0,
+               impacts_left = 0;
+  std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0, dynamic_faces = 0,
+               static_faces = 0;
+  std::int64_t newton_iterations = 0, cg_iterations = 0;
+  double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true
+  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  ///< [J]
+  double max_strain = 0;  ///< largest principal stretch − 1
+  double max_speed = 0;   ///< [m/s]
+  double min_gap = 0;     ///< smallest proximity distance at the start of the step [m], h if none
+  std::uint64_t state_hash = 0;
+
+  bool accepted = true;                  ///< false: the state before the step was kept
+  bool finite = true;                    ///< false: NaN or infinity appeared and was thrown away
+  std::vector<OffendingPair> offending;  ///< of a refused step, at most 100
+};
+
+/// One column of the statistics table.
+struct ReportColumn {
+  using Member = std::variant<double StepReport::*, std::int64_t StepReport::*,
+                              std::uint64_t StepReport::*>;
+  std::string_view name;
+  Member member;
+};
+
+/// Columns in the order of the contract.
+std::span<const ReportColumn> report_columns();
+
+/// One value as text: integers exactly, doubles with 9 digits, the hash as 16 hex digits.
+std::string report_value(const StepReport& report, const ReportColumn& column);
+
+}  // namespace icloth

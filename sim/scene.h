@@ -1,0 +1,72 @@
+// A scene as the user describes it: const while it is simulated. SI units, Y up.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/material.h"
+#include "sim/mesh.h"
+#include "sim/parameters.h"
+
+namespace icloth {
+
+struct Cloth {
+  std::string name;
+  TriangleMesh mesh;         ///< start state
+  std::vector<Vec3d> rest;   ///< rest positions [m] (V), the start state's where none were given
+  Material material;
+  std::vector<Index> pins;   ///< vertices held where they start
+};
+
+/// Rigid pose at a time; between keyframes translation and rotation vector are interpolated.
+struct Keyframe {
+  double time = 0;       ///< [s]
+  Vec3d translation;     ///< [m]
+  Vec3d rotation;        ///< axis × angle [rad], about the obstacle's own origin
+};
+
+struct Obstacle {
+  std::string name;
+  TriangleMesh mesh;                      ///< pose at rest
+  std::vector<Keyframe> motion;           ///< sorted by time; empty: static
+  std::vector<std::vector<Vec3f>> frames; ///< point cache, (frames)(V) [m]; empty: none
+  double frame_rate = 25;                 ///< of the point cache [1/s]
+
+  bool moves() const { return motion.size() > 1 || frames.size() > 1; }
+  /// Vertex positions at a time [s]; written to out (V).
+  void pose(double time, std::vector<Vec3d>& out) const;
+};
+
+struct PathPoint {
+  double time;   ///< [s]
+  Vec3d target;  ///< [m]
+};
+
+/// A grab the scene file performs by itself: a patch around `vertex` follows the path.
+struct ScriptedGrab {
+  Index cloth = 0;
+  Index vertex = 0;
+  double radius = 0;     ///< [m]; 0: the parameter grab.radius
+  double stiffness = 0;  ///< [N/m]; 0: the parameter grab.stiffness
+  double start = 0, release = 0;  ///< [s]
+  std::vector<PathPoint> path;    ///< absolute targets, linear in between, sorted by time
+};
+
+struct CameraPose {
+  std::string name = "default";
+  Vec3d eye{0, 1.2, 2.5}, target{0, 1, 0}, up{0, 1, 0};
+  double fov = 35;  ///< vertical [degrees]
+};
+
+struct Scene {
+  std::string name;
+  std::string source;     ///< path or built-in name it was loaded from
+  double duration = 10;   ///< [s]
+  Parameters parameters;  ///< defaults overlaid with the scene's own
+  std::vector<Cloth> cloths;
+  std::vector<Obstacle> obstacles;
+  std::vector<ScriptedGrab> input;
+  std::vector<CameraPose> cameras;
+};
+
+}  // namespace icloth

@@ -1,0 +1,67 @@
+// The public face of the solver: one interface, three builds behind it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/input.h"
+#include "sim/parameters.h"
+#include "sim/report.h"
+#include "sim/scene.h"
+
+namespace icloth {
+
+enum class Build { cpu32, cpu64, cuda32 };
+
+std::string_view build_name(Build build);
+
+/// State of a simulation, enough to go on from. Positions hold all vertices (cloths in scene
+/// order, then obstacles), velocities likewise.
+struct Snapshot {
+  std::int64_t step = 0;
+  double time = 0;
+  std::vector<Vec3d> positions;   ///< [m] (V)
+  std::vector<Vec3d> velocities;  ///< [m/s] (V)
+};
+
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+
+  virtual Build build() const = 0;
+  virtual const Scene& scene() const = 0;
+
+  /// One step of parameters().time_step. Never throws for numerical reasons: a refused step keeps
+  /// the state before it and says so in the report.
+  virtual StepReport step(std::span<const InputEvent> events) = 0;
+
+  virtual const Parameters& parameters() const = 0;
+  virtual void set_parameters(const Parameters& parameters) = 0;
+
+  virtual double time() const = 0;
+  virtual std::int64_t step_index() const = 0;
+  virtual std::uint64_t state_hash() const = 0;
+
+  /// Positions of all vertices in single precision, for drawing; resized to (V).
+  virtual void positions(std::vector<Vec3f>& out) const = 0;
+  virtual Snapshot snapshot() const = 0;
+  /// Back to a state of this scene; held handles are dropped.
+  virtual void restore(const Snapshot& snapshot) = 0;
+  virtual std::vector<HandleState> handles() const = 0;
+};
+
+/// True when this program holds the build and, for cuda32, a usable device is there.
+/// `reason` (optional) says in one line why not.
+bool build_available(Build build, std::string* reason = nullptr);
+
+/// The scene must outlive nothing: the simulator keeps its share. Throws DeviceError when the build
+/// is not available, InputError when the scene cannot be simulated (massless vertices …).
+/// Start intersections are not checked here, see sim/intersections.h.
+std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Scene> scene);
+
+/// Largest number of threads the CPU builds use from now on; 0: all.
+void set_thread_count(int threads);
+
+}  // namespace icloth
