@@ -1,0 +1,244 @@
+#include "sim/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <vector>
+
+#include "sim/error.h"
+
+namespace icloth {
+namespace {
+
+using P = Parameters;
+
+// Units: k is a repulsion stiffness per area, hence N/m³. "paper" is Tang et al. 2018, "ARCSim" the
+// defaults that Narain, Samii and O'Brien 2012 published with theirs, "measured" our own runs.
+constexpr ParameterInfo kTable[] = {
+    {"step.time_step", "time step dt", "s", &P::time_step, 1e-4, 0.1, true,
+     "smoother contacts, less numerical damping, more steps for a second of motion",
+     "fewer steps for a second of motion, more damping, deeper penetrations to resolve",
+     "paper, Fig. 8 (1/200 to 1/100 s)"},
+    {"step.max_substep_levels", "substep levels", "", &P::max_substep_levels, 0, 10, false,
+     "a step that cannot be made free of penetrations is refused sooner",
+     "such a step is halved more often before it is refused", "own choice: dt/64"},
+
+    {"gravity.x", "gravity x", "m/s²", &P::gravity_x, -100, 100, false, "pull towards −x",
+     "pull towards +x", "Y is up"},
+    {"gravity.y", "gravity y", "m/s²", &P::gravity_y, -100, 100, false, "stronger pull down",
+     "weaker pull down, above 0: up", "standard gravity"},
+    {"gravity.z", "gravity z", "m/s²", &P::gravity_z, -100, 100, false, "pull towards −z",
+     "pull towards +z", "Y is up"},
+
+    {"wind.x", "wind x", "m/s", &P::wind_x, -50, 50, false, "air moves towards −x",
+     "air moves towards +x", "still air"},
+    {"wind.y", "wind y", "m/s", &P::wind_y, -50, 50, false, "air moves down", "air moves up",
+     "still air"},
+    {"wind.z", "wind z", "m/s", &P::wind_z, -50, 50, false, "air moves towards −z",
+     "air moves towards +z", "still air"},
+    {"wind.air_density", "air density", "kg/m³", &P::air_density, 0, 10, false,
+     "less pressure across the cloth, 0: no air at all", "wind pushes and still air brakes more",
+     "ARCSim; air is 1.2"},
+    {"wind.air_drag", "air drag along the cloth", "N·s/m³", &P::air_drag, 0, 10, false,
+     "air slips along the cloth", "air drags the cloth along", "ARCSim"},
+
+    {"material.stretch_scale", "stretching ×", "", &P::stretch_scale, 1e-3, 1e3, true,
+     "softer in the plane, fewer iterations", "stiffer in the plane, more iterations",
+     "as measured"},
+    {"material.bend_scale", "bending ×", "", &P::bend_scale, 0, 1e3, false, "finer, softer folds",
+     "wider, stiffer folds", "as measured"},
+    {"material.density_scale", "density ×", "", &P::density_scale, 1e-2, 1e2, true,
+     "lighter cloth: moved more by wind and hands", "heavier cloth: sags and stretches more",
+     "as measured"},
+    {"material.damping", "added damping", "s", &P::damping_extra, 0, 0.1, false,
+     "ripples live longer", "ripples and motion die out, rotations are braked too",
+     "none beyond the fabric's own"},
+
+    {"proximity.enabled", "repulsion and friction", "", &P::proximity_enabled, 0, 1, false,
+     "off: impact zones alone keep layers apart, no friction", "on", "paper, Section 2.5"},
+    {"proximity.thickness", "thickness h", "m", &P::thickness, 1e-5, 0.05, true,
+     "layers lie closer, more impacts are left to the impact zones",
+     "layers stay further apart; above a third of an edge length neighbours repel", "ARCSim"},
+    {"proximity.stiffness", "repulsion stiffness k", "N/m³", &P::repulsion_stiffness, 1e2, 1e10,
+     true, "layers press into the thickness, more impacts",
+     "contacts hold heavier loads and faster approaches, more iterations",
+     "stops 3 m/s within 1 mm; ARCSim's sphere scene"},
+    {"proximity.friction_cloth", "friction cloth–cloth", "", &P::friction_cloth, 0, 2, false,
+     "layers slide on each other", "layers and knots hold", "ARCSim"},
+    {"proximity.friction_obstacle", "friction cloth–obstacle", "", &P::friction_obstacle, 0, 2,
+     false, "cloth slides off bodies", "cloth is carried along by bodies", "ARCSim"},
+
+    {"implicit.cg_tolerance", "CG tolerance", "", &P::cg_tolerance, 1e-10, 0.5, true,
+     "solves the linear system better, slower", "faster, loses momentum, may look damped",
+     "measured; the paper's family uses 1e-2"},
+    {"implicit.cg_max_iterations", "CG iterations", "", &P::cg_max_iterations, 1, 20000, true,
+     "bounds the time of a step, stiff cloth looks stretchy", "reaches the tolerance more often",
+     "P-Cloth (Li et al. 2020)"},
+
+    {"broad_phase.rebuild_interval", "tree rebuilt every", "steps", &P::rebuild_interval, 1, 1000,
+     true, "tighter boxes, more time spent building", "looser boxes, more candidate pairs",
+     "measured"},
+
+    {"impact_zones.enabled", "impact zones", "", &P::impact_zones_enabled, 0, 1, false,
+     "off: penetrations are counted, not resolved", "on", "paper, Section 4"},
+    {"impact_zones.offset", "impact offset δ", "m", &P::offset, 1e-6, 0.01, true,
+     "resolved layers end closer to each other, more of them collide again",
+     "resolved layers end further apart, visible jumps", "ARCSim; 0.1 × thickness"},
+    {"impact_zones.penalty", "penalty μ", "", &P::penalty, 1, 1e6, true,
+     "constraints are approached slowly; rho must be lowered with it",
+     "constraints dominate, ill-conditioned", "paper, Eq. 6"},
+    {"impact_zones.rho", "Chebyshev ρ", "", &P::rho, 0, 0.99999, false,
+     "slower convergence, more robust", "faster convergence, diverges when penalty is small",
+     "paper, Eq. 8"},
+    {"impact_zones.iterations", "iterations of a zone", "", &P::zone_iterations, 1, 10000, true,
+     "faster rounds, more rounds needed", "each round resolves more", "paper, Section 4.1"},
+    {"impact_zones.step_threshold", "smallest step length", "", &P::step_threshold, 0, 1e-2, false,
+     "iterates until nothing moves any more", "stops early", "paper, Section 4.1"},
+    {"impact_zones.chebyshev", "Chebyshev acceleration", "", &P::chebyshev, 0, 1, false,
+     "off: plain descent, slower", "on", "paper, Eq. 8"},
+    {"impact_zones.max_rounds", "rounds", "", &P::max_rounds, 1, 1000, true,
+     "gives up sooner and halves the step", "tries longer before the step is halved",
+     "own choice; the paper shows up to 200"},
+
+    {"grab.stiffness", "grab stiffness", "N/m", &P::grab_stiffness, 1, 1e5, true,
+     "cloth follows the hand softly", "cloth follows the hand closely, stretches more",
+     "own choice"},
+    {"grab.radius", "grab radius", "m", &P::grab_radius, 1e-3, 0.5, true,
+     "holds a small spot, pulls a tip", "holds a wide patch", "own choice: a fingertip"},
+    {"grab.max_speed", "fastest hand", "m/s", &P::grab_max_speed, 0.1, 20, true,
+     "cloth lags behind a fast cursor, calmer", "cloth keeps up, larger impacts in a step",
+     "own choice"},
+};
+
+/// Short names of the paper's symbols, for the command line.
+constexpr std::pair<std::string_view, std::string_view> kAliases[] = {
+    {"time_step", "step.time_step"},
+    {"mu", "impact_zones.penalty"},
+    {"rho", "impact_zones.rho"},
+};
+
+std::string_view without_alias(std::string_view key) {
+  for (const auto& [alias, name] : kAliases)
+    if (alias == key) return name;
+  return key;
+}
+
+/// Shortest text that reads back as the same number.
+std::string short_number(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, error == std::errc{} ? end : text};
+}
+
+std::string expected_range(const ParameterInfo& info) {
+  if (std::holds_alternative<bool P::*>(info.member)) return "true or false";
+  const char* kind = std::holds_alternative<int P::*>(info.member) ? "a whole number" : "a number";
+  std::string text = std::string(kind) + " from " + short_number(info.minimum) + " to " +
+                     short_number(info.maximum);
+  if (!info.unit.empty()) text += " " + std::string(info.unit);
+  return text;
+}
+
+[[noreturn]] void refuse(const ParameterInfo& info, std::string_view value) {
+  throw InputError("parameter " + std::string(info.name) + ": value '" + std::string(value) +
+                   "', expected " + expected_range(info));
+}
+
+/// Number behind the text of --set; false when it is not one.
+bool parse_value(std::string_view text, bool words, double& value) {
+  if (words && (text == "true" || text == "on")) return value = 1, true;
+  if (words && (text == "false" || text == "off")) return value = 0, true;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && rest == end;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// Nearest by the whole name or by its last word, so that "thicknes" finds its group.
+std::string_view nearest_parameter(std::string_view key) {
+  std::vector<std::string_view> words, names;
+  for (const ParameterInfo& info : kTable) {
+    for (std::string_view word : {info.name, info.name.substr(info.name.find('.') + 1)}) {
+      words.push_back(word);
+      names.push_back(info.name);
+    }
+  }
+  const std::string_view found = nearest_name(key, words);
+  return names[static_cast<std::size_t>(std::ranges::find(words, found) - words.begin())];
+}
+
+}  // namespace
+
+std::span<const ParameterInfo> parameter_table() { return kTable; }
+
+const ParameterInfo* find_parameter(std::string_view name) {
+  for (const ParameterInfo& info : kTable)
+    if (info.name == name) return &info;
+  return nullptr;
+}
+
+double get_parameter(const Parameters& parameters, const ParameterInfo& info) {
+  return std::visit([&](auto member) { return static_cast<double>(parameters.*member); },
+                    info.member);
+}
+
+void set_parameter(Parameters& parameters, const ParameterInfo& info, double value) {
+  const bool whole = !std::holds_alternative<double P::*>(info.member);
+  if (!(value >= info.minimum && value <= info.maximum) || (whole && value != std::floor(value)))
+    refuse(info, short_number(value));
+  if (const auto* real = std::get_if<double P::*>(&info.member)) parameters.** real = value;
+  if (const auto* number = std::get_if<int P::*>(&info.member))
+    parameters.** number = static_cast<int>(value);
+  if (const auto* flag = std::get_if<bool P::*>(&info.member)) parameters.** flag = value != 0;
+}
+
+void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {
+  const ParameterInfo* info = find_parameter(without_alias(key));
+  if (!info)
+    throw InputError("parameter '" + std::string(key) + "' is not known, the nearest is '" +
+                     std::string(nearest_parameter(key)) + "'");
+  double number = 0;
+  if (!parse_value(value, std::holds_alternative<bool P::*>(info->member), number))
+    refuse(*info, value);
+  set_parameter(parameters, *info, number);
+}
+
+std::string dump_parameters(const Parameters& parameters) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const ParameterInfo& info : kTable)
+    std::visit([&](auto member) { json[std::string(info.name)] = parameters.*member; },
+               info.member);
+  return json.dump(2);
+}
+
+std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
+  std::string_view best;
+  std::size_t smallest = 0;
+  for (std::string_view candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (!best.empty() && distance >= smallest) continue;
+    best = candidate;
+    smallest = distance;
+  }
+  return best;
+}
+
+}  // namespace icloth
