@@ -1,0 +1,73 @@
+// A camera that orbits a target; Y is up.
+#pragma once
+
+#include <array>
+
+#include "sim/scene.h"
+
+namespace icloth {
+
+/// Column-major, as OpenGL takes it.
+using Matrix4 = std::array<double, 16>;
+
+struct Ray {
+  Vec3d origin;     ///< [m]
+  Vec3d direction;  ///< unit length
+};
+
+/// A point on the picture: x to the right, y down, both in pixels from the top left corner.
+struct Projected {
+  double x = 0, y = 0;
+  double depth = 0;  ///< along the viewing direction [m]; ≤ 0 behind the eye
+};
+
+class Camera {
+ public:
+  Camera() : Camera(CameraPose{}) {}
+  /// Keeps eye, target and field of view; the horizon stays level whatever `up` is.
+  explicit Camera(const CameraPose& pose);
+
+  /// The pose as a scene file stores it.
+  CameraPose pose() const;
+
+  Vec3d eye() const;
+  Vec3d target() const { return target_; }
+  Vec3d forward() const;
+  Vec3d right() const;
+  Vec3d up() const;
+  double distance() const { return distance_; }
+  double fov() const { return fov_; }  ///< vertical [degrees]
+
+  Matrix4 view() const;
+  /// OpenGL clip space; near and far planes follow the distance to the target.
+  Matrix4 projection(double aspect) const;
+
+  /// Turns around the target: a drag of the pointer in pixels on a picture of `height` pixels
+  /// (a drag over the whole height is half a turn).
+  void orbit(double dx, double dy, int height);
+  /// Moves eye and target so that the target's plane follows the pointer.
+  void pan(double dx, double dy, int height);
+  /// Distance to the target times `factor`.
+  void dolly(double factor);
+  /// The same towards a point that stays where it is on the picture.
+  void dolly_to(double factor, Vec3d point);
+  /// Turns around another point from now on; the eye stays where it is and the view direction
+  /// turns towards the point.
+  void set_pivot(Vec3d point);
+  /// Shows a whole box from the present direction.
+  void frame_box(Vec3d low, Vec3d high, double aspect);
+
+  /// Through a point of the picture; (0.5, 0.5) is the centre of the top left pixel.
+  Ray ray(double x, double y, int width, int height) const;
+  Projected project(Vec3d point, int width, int height) const;
+  /// Size of one pixel at a depth along the viewing direction [m].
+  double pixel_size(double depth, int height) const;
+
+ private:
+  Vec3d target_;
+  double yaw_ = 0, pitch_ = 0;  ///< of the eye seen from the target [rad]
+  double distance_ = 1;         ///< [m]
+  double fov_ = 35;
+};
+
+}  // namespace icloth

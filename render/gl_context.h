@@ -1,0 +1,38 @@
+// Where OpenGL comes from: a window (GLFW, in app/) or nothing but a device (EGL).
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace icloth {
+
+/// What glfwGetProcAddress and eglGetProcAddress return.
+using GlFunction = void (*)();
+using GlLoader = GlFunction (*)(const char* name);
+
+/// A context of OpenGL 4.5 core that its owner keeps alive.
+class GlContext {
+ public:
+  virtual ~GlContext() = default;
+
+  /// Makes it the calling thread's current context.
+  virtual void make_current() = 0;
+  /// One line that says where the context comes from, e.g. "EGL device 0 (surfaceless)".
+  virtual std::string origin() const = 0;
+};
+
+/// Fetches the functions of the current context; call it once after the context became current.
+/// Throws DeviceError when the context is older than 4.5 core.
+void load_gl(GlLoader loader);
+
+/// "RENDERER, OpenGL VERSION" of the current context.
+std::string gl_renderer();
+
+/// Throws DeviceError naming `where` when OpenGL has recorded an error since the last call.
+void check_gl(const char* where);
+
+/// Several lines for `icloth info`: renderer, version, origin, and how vertices reach the GPU and
+/// why. Makes a headless context of its own; a missing one is said, not thrown.
+std::string gl_info();
+
+}  // namespace icloth

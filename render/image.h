@@ -1,0 +1,60 @@
+// Pictures in memory, as PNG files, and compared with each other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace icloth {
+
+/// 8-bit sRGB with alpha, rows from top to bottom.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;  ///< RGBA (height)(width)(4)
+
+  Image() = default;
+  Image(int image_width, int image_height);
+
+  std::uint8_t* at(int x, int y) { return &pixels[index(x, y)]; }
+  const std::uint8_t* at(int x, int y) const { return &pixels[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                static_cast<std::size_t>(x));
+  }
+};
+
+/// Throws InputError when the file cannot be written.
+void write_png(const std::string& path, const Image& image);
+/// Throws InputError when the file is missing, is no PNG, or has more than 64 million pixels.
+Image read_png(const std::string& path);
+
+/// How two pictures may differ and still count as the same. The defaults are for one software
+/// rasteriser on processors of different makers.
+struct ImageTolerance {
+  int channel = 4;          ///< difference of a channel that counts [1/255]
+  double fraction = 0.003;  ///< largest share of the pixels with such a channel
+  int blob_channel = 32;    ///< difference of a channel that is seen [1/255]
+  int blob_pixels = 48;     ///< largest connected (8 neighbours) set of such pixels
+};
+
+struct ImageDifference {
+  bool same_size = false;
+  bool blank = false;       ///< the actual picture has one colour only
+  double fraction = 0;      ///< of the pixels beyond `channel`
+  int largest_blob = 0;     ///< pixels
+  int largest_channel = 0;  ///< largest difference of a channel [1/255]
+
+  bool accepted(const ImageTolerance& tolerance) const;
+  /// One line with the figures.
+  std::string text() const;
+};
+
+ImageDifference compare(const Image& actual, const Image& expected,
+                        const ImageTolerance& tolerance = {});
+
+/// |actual − expected| × gain per colour channel, opaque. Sizes must be equal.
+Image difference_image(const Image& actual, const Image& expected, int gain = 16);
+
+}  // namespace icloth

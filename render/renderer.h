@@ -1,0 +1,75 @@
+// Draws a published state: fabric, bodies, ground, shadow, handles and markers. It never writes
+// the state, and knows nothing of windows.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "render/camera.h"
+#include "render/image.h"
+#include "sim/input.h"
+#include "sim/world.h"
+
+namespace icloth {
+
+enum class ViewMode {
+  shaded,     ///< fabric as the eye sees it
+  wireframe,  ///< shaded, with the edges of the mesh
+  strain,     ///< faces coloured by the largest principal strain
+};
+
+std::span<const std::string_view> view_mode_names();
+/// Throws InputError naming the view and the ones there are.
+ViewMode parse_view_mode(std::string_view name);
+
+enum class Quality {
+  draft,        ///< one sample a pixel, hard work avoided: software rendering while things move
+  interactive,  ///< 2 × 2 samples a pixel, soft shadow from one map
+  still,        ///< area light and sky sampled by many shadow maps; the same bits every time
+};
+
+/// What is drawn. The spans must stay valid during draw() only.
+struct Frame {
+  std::span<const Vec3f> positions;          ///< all vertices of the world [m]
+  std::span<const HandleState> handles{};    ///< line from hit to target, coloured by saturation
+  std::span<const Index> marked_faces{};     ///< global faces shown in red, also when hidden
+  std::span<const Index> marked_vertices{};  ///< global vertices shown as dots (pins)
+  std::span<const Vec3f> hover{};            ///< points under the pointer, drawn as rings [m]
+  ViewMode view = ViewMode::shaded;
+  double strain_range = 0.1;  ///< strain that gets the last colour of the scale
+};
+
+class Renderer {
+ public:
+  /// Needs a current context with its functions loaded, here and in every call, also to destroy.
+  /// `world` must outlive the renderer. Throws DeviceError when a shader does not compile.
+  explicit Renderer(const World& world);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  void set_quality(Quality quality);
+  Quality quality() const;
+  /// Height of the studio floor [m]; by default the lowest vertex of the start state.
+  void set_ground(double height);
+
+  /// Fills `width` × `height` pixels of a framebuffer (0: the window's) with the finished picture
+  /// in sRGB bytes; everything there is overwritten. Blending, depth test and face culling are
+  /// off afterwards, the framebuffer is bound, and the viewport covers it.
+  void draw(const Frame& frame, const Camera& camera, int width, int height,
+            unsigned target_framebuffer);
+
+  /// The same into a picture.
+  Image picture(const Frame& frame, const Camera& camera, int width, int height);
+
+  /// How vertices reach the GPU, e.g. "host copy (built without CUDA)".
+  std::string vertex_way() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace icloth
