@@ -1,0 +1,359 @@
+#include "app/session.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <utility>
+
+namespace icloth {
+
+namespace {
+
+constexpr std::size_t kMaxReports = 4096;
+constexpr auto kPublishInterval = std::chrono::milliseconds(4);
+
+/// Keeps the map of held handles in line with an event that is about to be applied.
+void track(std::map<int, InputEvent>& held, const InputEvent& event) {
+  if (event.kind == InputEvent::Kind::release) {
+    held.erase(event.handle);
+  } else if (event.kind == InputEvent::Kind::grab) {
+    held[event.handle] = event;
+  } else if (const auto it = held.find(event.handle); it != held.end()) {
+    it->second.target = event.target;
+  }
+}
+
+InputEvent release_of(int handle) {
+  InputEvent event;
+  event.kind = InputEvent::Kind::release;
+  event.handle = handle;
+  return event;
+}
+
+}  // namespace
+
+std::string failure_sentence(const StepReport& report) {
+  char text[512];
+  if (!report.finite) {
+    std::snprintf(text, sizeof text,
+                  "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
+                  "cloth is where it was before. A smaller time step usually helps.",
+                  report.time);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "The step at %.3f s was refused: %lld collision%s could not be resolved in %lld "
+                  "rounds. The cloth is where it was before and nothing has passed through. Let "
+                  "go of the handles, or go on with a smaller time step.",
+                  report.time, static_cast<long long>(report.impacts_left),
+                  report.impacts_left == 1 ? "" : "s", static_cast<long long>(report.rounds));
+  }
+  return text;
+}
+
+Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
+    : simulator_(std::move(simulator)),
+      options_(std::move(options)),
+      recorded_parameters_(simulator_->parameters()),
+      history_(options_.history_bytes) {
+  recording_.scene = options_.scene;
+  recording_.build = build_name(simulator_->build());
+  recording_.overrides = options_.overrides;
+  start_.snapshot = simulator_->snapshot();
+  start_.parameters = simulator_->parameters();
+  if (refused()) fail(options_.refusal);
+  publish(true);
+  published_.take();
+  thread_ = std::thread([this] { run(); });
+}
+
+Session::~Session() { stop(); }
+
+// ---- interface thread --------------------------------------------------------------------------
+
+void Session::send(Mail mail) {
+  {
+    const std::lock_guard lock(mutex_);
+    mailbox_.push_back(std::move(mail));
+  }
+  wake_.notify_one();
+}
+
+void Session::play() { send(Command::play); }
+void Session::pause() { send(Command::pause); }
+void Session::step_once() { send(Command::step); }
+void Session::step_back(std::size_t count) { send(Back{count}); }
+void Session::reset() { send(Command::reset); }
+void Session::smaller_step() { send(Command::smaller_step); }
+void Session::set_scripted(bool on) { send(Toggle{true, on}); }
+void Session::set_real_time(bool on) { send(Toggle{false, on}); }
+void Session::save(const std::string& path) { send(Save{path}); }
+void Session::post(const InputEvent& event) { send(event); }
+void Session::set(const std::string& parameter, double value) { send(Change{parameter, value}); }
+
+std::vector<StepReport> Session::take_reports() {
+  std::deque<StepReport> taken;
+  {
+    const std::lock_guard lock(mutex_);
+    taken.swap(reports_);
+  }
+  return {std::make_move_iterator(taken.begin()), std::make_move_iterator(taken.end())};
+}
+
+void Session::stop() {
+  if (!thread_.joinable()) return;
+  send(Command::stop);
+  thread_.join();
+}
+
+Recording Session::recording() const {
+  Recording copy = recording_;
+  copy.final_hash = simulator_->state_hash();
+  return copy;
+}
+
+// ---- solver thread -----------------------------------------------------------------------------
+
+void Session::run() {
+  std::vector<Mail> mail;
+  while (!stopping_) {
+    wait_for_mail(mail);
+    for (const Mail& item : mail) {
+      std::visit([this](const auto& content) { handle(content); }, item);
+    }
+    const bool idle = !playing_ && !single_;
+    if (!mail.empty() && idle) publish(true);
+    mail.clear();
+    if (stopping_ || idle) continue;
+    if (single_ || Clock::now() >= due_) advance();
+  }
+}
+
+void Session::wait_for_mail(std::vector<Mail>& mail) {
+  std::unique_lock lock(mutex_);
+  const auto arrived = [this] { return !mailbox_.empty(); };
+  if (single_) {
+    // The asked-for step comes first; mail is looked at without waiting.
+  } else if (!playing_) {
+    wake_.wait(lock, arrived);
+  } else if (options_.real_time) {
+    wake_.wait_until(lock, due_, arrived);
+  }
+  mail.swap(mailbox_);
+}
+
+void Session::handle(Command command) {
+  switch (command) {
+    case Command::play:
+      if (!playing_) due_ = Clock::now();
+      playing_ = !refused();
+      break;
+    case Command::pause:
+      playing_ = false;
+      break;
+    case Command::step:
+      playing_ = false;
+      single_ = !refused();
+      break;
+    case Command::reset:
+      go_to(start_);
+      history_.clear();
+      break;
+    case Command::smaller_step: {
+      const ParameterInfo* info = find_parameter("step.time_step");
+      handle(Change{"step.time_step",
+                    std::max(info ? info->minimum : 0.0, simulator_->parameters().time_step / 2)});
+      handle(Command::play);
+      break;
+    }
+    case Command::stop:
+      stopping_ = true;
+      break;
+  }
+}
+
+void Session::handle(const Back& back) {
+  playing_ = false;
+  if (const auto entry = history_.rewind(std::min(back.count, history_.size()))) {
+    go_to(*entry);
+  } else {
+    note("There is no older state to go back to.");
+  }
+}
+
+void Session::handle(const Toggle& toggle) {
+  if (!toggle.scripted) {
+    options_.real_time = toggle.on;
+    due_ = Clock::now();
+    return;
+  }
+  scripted_ = toggle.on;
+  script_.reset();
+  if (scripted_) {
+    script_.emplace(simulator_->scene());
+  } else {
+    for (const auto& [id, grab] : held_) {
+      if (id >= kFirstScriptedHandle) pending_.push_back(release_of(id));
+    }
+  }
+}
+
+void Session::handle(const Save& save) {
+  try {
+    save_recording(recording(), save.path);
+    note("Session saved to " + save.path + " (" + std::to_string(recording_.steps.size()) +
+         " steps). Run it again with: icloth replay " + save.path);
+  } catch (const std::exception& error) {
+    note(std::string("The session was not saved: ") + error.what());
+  }
+}
+
+void Session::handle(const Change& change) {
+  const ParameterInfo* info = find_parameter(change.parameter);
+  if (!info) return note("There is no parameter " + change.parameter + ".");
+  try {
+    Parameters parameters = simulator_->parameters();
+    set_parameter(parameters, *info, change.value);
+    simulator_->set_parameters(parameters);
+  } catch (const std::exception& error) {
+    note(error.what());
+  }
+}
+
+/// Only the newest target of a handle matters to the next step.
+void Session::handle(const InputEvent& event) {
+  if (event.kind == InputEvent::Kind::move) {
+    const auto last = std::find_if(pending_.rbegin(), pending_.rend(),
+                                   [&](const InputEvent& e) { return e.handle == event.handle; });
+    if (last != pending_.rend() && last->kind != InputEvent::Kind::release) {
+      last->target = event.target;
+      return;
+    }
+  }
+  pending_.push_back(event);
+}
+
+Recording::Step Session::next_step() {
+  Recording::Step step;
+  step.events = std::exchange(pending_, {});
+  if (script_) {
+    for (const InputEvent& event :
+         script_->events(simulator_->time(), simulator_->parameters().time_step)) {
+      step.events.push_back(event);
+    }
+  }
+  for (const ParameterInfo& info : parameter_table()) {
+    const double now = get_parameter(simulator_->parameters(), info);
+    if (now != get_parameter(recorded_parameters_, info)) {
+      step.parameters.emplace_back(info.name, now);
+    }
+  }
+  return step;
+}
+
+void Session::advance() {
+  single_ = false;
+  const Clock::time_point begin = Clock::now();
+  history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_, held_});
+  Recording::Step step = next_step();
+  try {
+    report_ = simulator_->step(step.events);
+  } catch (const std::exception& error) {
+    options_.refusal = std::string("The solver stopped: ") + error.what();
+    playing_ = false;
+    fail(options_.refusal);
+    return publish(true);
+  }
+  for (const InputEvent& event : step.events) track(held_, event);
+  recorded_parameters_ = simulator_->parameters();
+  recording_.steps.push_back(std::move(step));
+  const auto interval = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(recorded_parameters_.time_step));
+  due_ = options_.real_time ? std::max(due_ + interval, begin) : begin;
+  finish(report_);
+}
+
+void Session::finish(const StepReport& report) {
+  const Clock::time_point now = Clock::now();
+  step_ends_.push_back(now);
+  while (step_ends_.size() > 2 && now - step_ends_.front() > std::chrono::seconds(1)) {
+    step_ends_.pop_front();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    reports_.push_back(report);
+    if (reports_.size() > kMaxReports) reports_.pop_front();
+  }
+  failed_ = !report.accepted;
+  if (failed_) {
+    playing_ = false;
+    fail(failure_sentence(report));
+  }
+  publish(!playing_);
+}
+
+/// The recording is cut where the entry was taken. The simulator drops held handles when it is
+/// restored, a replay of the cut recording still holds them: they are let go and taken again, so
+/// that both go on from the same state.
+void Session::go_to(const HistoryEntry& entry) {
+  playing_ = single_ = false;
+  simulator_->restore(entry.snapshot);
+  recording_.steps.resize(entry.recorded_steps);
+  recorded_parameters_ = entry.parameters;
+  pending_.clear();
+  for (const auto& [id, grab] : entry.held) pending_.push_back(release_of(id));
+  for (const auto& [id, grab] : entry.held) {
+    if (id < kFirstScriptedHandle) pending_.push_back(grab);
+  }
+  held_ = entry.held;
+  if (scripted_) script_.emplace(simulator_->scene());
+  report_ = {};
+  report_.step = entry.snapshot.step;
+  report_.time = entry.snapshot.time;
+  step_ends_.clear();
+  failed_ = refused();
+  if (!failed_) failure_.clear();
+  ++rewinds_;
+}
+
+void Session::fail(const std::string& sentence) {
+  failed_ = true;
+  failure_ = sentence;
+}
+
+void Session::note(const std::string& text) {
+  note_ = text;
+  ++notes_;
+}
+
+/// A fast solver does not publish every step: nobody sees more than the screen shows.
+void Session::publish(bool always) {
+  const Clock::time_point now = Clock::now();
+  if (!always && now - last_published_ < kPublishInterval) return;
+  last_published_ = now;
+  PublishedState& state = published_.back();
+  state.step = simulator_->step_index();
+  state.time = simulator_->time();
+  simulator_->positions(state.positions);
+  state.handles = simulator_->handles();
+  state.held.clear();
+  for (const auto& [id, grab] : held_) state.held.push_back(grab);
+  state.rewinds = rewinds_;
+  state.report = report_;
+  state.parameters = simulator_->parameters();
+  state.playing = playing_;
+  state.scripted = scripted_;
+  state.real_time = options_.real_time;
+  const std::size_t count = step_ends_.size();
+  const double span =
+      count < 2 ? 0 : std::chrono::duration<double>(step_ends_.back() - step_ends_.front()).count();
+  state.steps_per_second = playing_ && span > 0 ? static_cast<double>(count - 1) / span : 0;
+  state.history = history_.size();
+  state.history_bytes = history_.bytes();
+  state.failed = failed_;
+  state.failure = failure_;
+  state.notes = notes_;
+  state.note = note_;
+  published_.publish();
+}
+
+}  // namespace icloth

@@ -1,0 +1,160 @@
+// The simulation behind the window: a solver on its own thread, fed through a mailbox.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "app/history.h"
+#include "app/triple_buffer.h"
+#include "sim/input.h"
+#include "sim/simulator.h"
+
+namespace icloth {
+
+/// Handles of a scene's scripted grabs are numbered from here (sim/input.h).
+inline constexpr int kFirstScriptedHandle = 1000;
+
+struct SessionOptions {
+  std::string scene;                      ///< as it is written into recordings
+  std::vector<std::string> overrides;     ///< --set arguments of the scene
+  std::size_t history_bytes = 64u << 20;  ///< memory for stepping back
+  bool real_time = true;                  ///< never faster than time_step per wall second
+  std::string refusal;                    ///< why nothing may run (bad start state); empty: may
+};
+
+/// What the interface thread sees.
+struct PublishedState {
+  std::int64_t step = 0;
+  double time = 0;                   ///< [s]
+  std::vector<Vec3f> positions;      ///< all vertices [m]
+  std::vector<HandleState> handles;  ///< as the solver holds them
+  std::vector<InputEvent> held;      ///< the same as grabs with their newest targets
+  std::uint64_t rewinds = 0;         ///< grows when the state jumps back: handles may be gone
+  StepReport report;                 ///< of the newest step
+  Parameters parameters;
+  bool playing = false;
+  bool scripted = false, real_time = true;
+  double steps_per_second = 0;
+  std::size_t history = 0;  ///< steps that can be taken back
+  std::size_t history_bytes = 0;
+  bool failed = false;      ///< the newest step was refused, or nothing may run
+  std::string failure;      ///< plain sentence
+  std::uint64_t notes = 0;  ///< grows with every new note
+  std::string note;         ///< e.g. "session saved to …"
+};
+
+/// Owns the simulator. Every public member is called from one thread (the interface) and returns
+/// at once; a step in progress is never waited for, except by stop().
+class Session {
+ public:
+  Session(std::unique_ptr<Simulator> simulator, SessionOptions options);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void play();
+  void pause();
+  void step_once();  ///< one step, then pause
+  void step_back(std::size_t count = 1);
+  void reset();                ///< to the start state; parameters stay
+  void smaller_step();         ///< halves the time step and goes on playing
+  void set_scripted(bool on);  ///< apply the scene's scripted grabs as well
+  void set_real_time(bool on);
+  void save(const std::string& path);  ///< writes the recording; tells in a note how it went
+  void post(const InputEvent& event);  ///< for the next step
+  void set(const std::string& parameter, double value);
+
+  /// Moves state() to the newest published one; false when nothing new was published.
+  bool take() { return published_.take(); }
+  const PublishedState& state() const { return published_.front(); }
+  /// Reports of all steps since the last call, oldest first (the newest 4096 when not asked long).
+  std::vector<StepReport> take_reports();
+
+  /// Ends the thread after the step in progress. The recording is complete then.
+  void stop();
+  /// Only after stop().
+  Recording recording() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class Command { play, pause, step, reset, smaller_step, stop };
+  struct Back {
+    std::size_t count;
+  };
+  struct Toggle {
+    bool scripted;
+    bool on;
+  };
+  struct Save {
+    std::string path;
+  };
+  struct Change {
+    std::string parameter;
+    double value;
+  };
+  using Mail = std::variant<Command, Back, Toggle, Save, Change, InputEvent>;
+
+  void send(Mail mail);
+
+  // On the solver thread.
+  void run();
+  void wait_for_mail(std::vector<Mail>& mail);
+  void handle(Command command);
+  void handle(const Back& back);
+  void handle(const Toggle& toggle);
+  void handle(const Save& save);
+  void handle(const Change& change);
+  void handle(const InputEvent& event);
+  void advance();
+  Recording::Step next_step();
+  void finish(const StepReport& report);
+  void go_to(const HistoryEntry& entry);
+  void fail(const std::string& sentence);
+  void note(const std::string& text);
+  void publish(bool always);
+  bool refused() const { return !options_.refusal.empty(); }
+
+  std::unique_ptr<Simulator> simulator_;
+  SessionOptions options_;
+
+  // Shared with the interface thread.
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::vector<Mail> mailbox_;       ///< under mutex_
+  std::deque<StepReport> reports_;  ///< under mutex_, at most 4096
+  TripleBuffer<PublishedState> published_;
+
+  // Of the solver thread alone.
+  bool playing_ = false, stopping_ = false, scripted_ = false, single_ = false;
+  std::vector<InputEvent> pending_;  ///< events for the next step
+  std::map<int, InputEvent> held_;
+  std::optional<ScriptedInput> script_;
+  Parameters recorded_parameters_;  ///< in force at the end of the recording
+  Recording recording_;
+  HistoryEntry start_;
+  History history_;
+  StepReport report_;
+  bool failed_ = false;
+  std::string failure_;
+  std::uint64_t rewinds_ = 0, notes_ = 0;
+  std::string note_;
+  Clock::time_point due_{}, last_published_{};
+  std::deque<Clock::time_point> step_ends_;  ///< of the last second
+
+  std::thread thread_;  ///< last: starts when all else is there
+};
+
+/// Why a step was refused, for people.
+std::string failure_sentence(const StepReport& report);
+
+}  // namespace icloth
