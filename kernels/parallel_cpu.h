@@ -1,0 +1,176 @@
+// The primitives on the CPU, over oneTBB. Included by kernels/parallel.h, which says what they do.
+//
+// Few elements are done by the calling thread: waking another one costs microseconds.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace icloth::ICLOTH_BUILD {
+namespace detail {
+
+inline constexpr Index kForEachSerialBelow = 2048;
+inline constexpr Index kForEachGrain = 512;
+inline constexpr Index kReduceChunk = 1024;  // fixed: it decides the rounding of a sum
+inline constexpr Index kScanChunk = 16384;
+inline constexpr Index kCompactChunk = 4096;
+inline constexpr Index kCollectChunk = 64;  // work of one element is large: it walks a tree or grid
+
+/// Memory that a primitive keeps between its calls; per thread, as two simulators may run at once.
+template <class T, int Slot>
+View<T> scratch(Index n) {
+  thread_local Array<T> array;
+  array.resize(n);
+  return array.view();
+}
+
+inline Index chunk_count(Index n, Index chunk) { return n / chunk + (n % chunk != 0 ? 1 : 0); }
+
+/// body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is small.
+/// Isolated: while this thread waits it must not start other work that would use its scratch.
+template <class Body>
+void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
+  if (n <= 0) return;
+  if (n < serial_below) return body(Index{0}, n);
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)),
+                      [&body](const tbb::blocked_range<Index>& r) { body(r.begin(), r.end()); });
+  });
+}
+
+/// body(chunk, first, last) for chunks of fixed size.
+template <class Body>
+void over_chunks(Index n, Index chunk, const Body& body) {
+  const Index chunks = chunk_count(n, chunk);
+  over_ranges(chunks, 2, 1, [&](Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) {
+      const Index first = c * chunk;
+      body(c, first, first + std::min(chunk, n - first));
+    }
+  });
+}
+
+[[noreturn]] inline void throw_too_long(const char* name) {
+  throw std::length_error(std::string(name) + ": more than 2^31 - 1 elements");
+}
+
+/// Four running values for numbers: one alone would wait for the latency of every addition.
+template <class T, class F, class Op>
+T reduce_chunk(Index first, Index last, T identity, const F& shared_f, const Op& op) {
+  const F f = shared_f;  // a local copy lets the compiler keep its members in registers
+  Index i = first;
+  if constexpr (std::is_arithmetic_v<T>) {
+    T lane[4] = {identity, identity, identity, identity};
+    for (; last - i >= 4; i += 4) {
+      for (Index k = 0; k < 4; ++k) lane[k] = op(lane[k], static_cast<T>(f(i + k)));
+    }
+    for (; i < last; ++i) lane[0] = op(lane[0], static_cast<T>(f(i)));
+    return op(op(lane[0], lane[1]), op(lane[2], lane[3]));
+  } else {
+    T value = identity;
+    for (; i < last; ++i) value = op(value, static_cast<T>(f(i)));
+    return value;
+  }
+}
+
+}  // namespace detail
+
+template <class F>
+void for_each(const char* name, Index n, const F& f) {
+  const ProfileScope scope(name);
+  detail::over_ranges(n, detail::kForEachSerialBelow, detail::kForEachGrain,
+                      [&f](Index first, Index last) {
+                        const F local = f;
+                        for (Index i = first; i < last; ++i) local(i);
+                      });
+}
+
+template <class T, class F, class Op>
+T reduce(const char* name, Index n, T identity, const F& f, const Op& op) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64);
+  const ProfileScope scope(name);
+  const Index chunks = detail::chunk_count(n, detail::kReduceChunk);
+  const View<T> partial = detail::scratch<T, 0>(chunks);
+  detail::over_chunks(n, detail::kReduceChunk, [&](Index c, Index first, Index last) {
+    partial[c] = detail::reduce_chunk(first, last, identity, f, op);
+  });
+  T value = identity;
+  for (Index c = 0; c < chunks; ++c) value = op(value, partial[c]);
+  return value;
+}
+
+inline Index exclusive_scan(const char* name, View<const Index> counts, View<Index> offsets) {
+  const ProfileScope scope(name);
+  const Index n = counts.size();
+  const View<std::int64_t> start =
+      detail::scratch<std::int64_t, 1>(detail::chunk_count(n, detail::kScanChunk));
+  detail::over_chunks(n, detail::kScanChunk, [&](Index c, Index first, Index last) {
+    std::int64_t sum = 0;
+    for (Index i = first; i < last; ++i) sum += counts[i];
+    start[c] = sum;
+  });
+  std::int64_t total = 0;
+  for (Index c = 0; c < start.size(); ++c) total += std::exchange(start[c], total);
+  if (total > std::numeric_limits<Index>::max()) detail::throw_too_long(name);
+  detail::over_chunks(n, detail::kScanChunk, [&](Index c, Index first, Index last) {
+    Index sum = static_cast<Index>(start[c]);
+    for (Index i = first; i < last; ++i) {
+      const Index count = counts[i];  // read first: the views may be the same memory
+      offsets[i] = sum;
+      sum += count;
+    }
+  });
+  if (offsets.size() > n) offsets[n] = static_cast<Index>(total);
+  return static_cast<Index>(total);
+}
+
+template <class P>
+Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
+  const ProfileScope scope(name);
+  const Index chunks = detail::chunk_count(n, detail::kCompactChunk);
+  const View<Index> kept = detail::scratch<Index, 2>(n);
+  const View<Index> start = detail::scratch<Index, 3>(chunks + 1);
+  detail::over_chunks(n, detail::kCompactChunk, [&](Index c, Index first, Index last) {
+    const P local = keep;
+    Index count = 0;
+    for (Index i = first; i < last; ++i) {
+      if (local(i)) kept[first + count++] = i;
+    }
+    start[c] = count;
+  });
+  Index total = 0;
+  for (Index c = 0; c < chunks; ++c) total += std::exchange(start[c], total);
+  start[chunks] = total;
+  out.resize(total);
+  const View<Index> result = out.view();
+  detail::over_chunks(n, detail::kCompactChunk, [&](Index c, Index first, Index) {
+    std::copy_n(kept.data() + first, start[c + 1] - start[c], result.data() + start[c]);
+  });
+  return total;
+}
+
+template <class F>
+void for_each_team(const char* name, Index teams, const F& f) {
+  const ProfileScope scope(name);
+  detail::over_ranges(teams, 2, 1, [&f](Index first, Index last) {
+    for (Index t = first; t < last; ++t) {
+      Team team;
+      f(team, t);
+    }
+  });
+}
+
+}  // namespace icloth::ICLOTH_BUILD
+
+#include "kernels/collect_cpu.h"
+#include "kernels/sort_cpu.h"

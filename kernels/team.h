@@ -1,0 +1,94 @@
+// A team: the threads of a CUDA block that work on one problem together; one thread on the CPU.
+//
+// Every member is called by all threads of the team alike (no call inside a branch that only some
+// threads take), except within `single`. Plain locals are private to each thread and must be
+// computed alike; what the threads share lies in arrays.
+#pragma once
+
+#include <type_traits>
+
+#include "kernels/platform.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class Team {
+ public:
+  static constexpr Index kThreads = 128;      ///< of a team on CUDA
+  static constexpr int kMaxReduceBytes = 64;  ///< largest sizeof(T) of a reduction
+
+  /// Threads of this team.
+  ICLOTH_HD Index size() const {
+#if defined(__CUDA_ARCH__)
+    return kThreads;
+#else
+    return 1;
+#endif
+  }
+  /// This thread's number in the team, 0 … size() − 1.
+  ICLOTH_HD Index rank() const {
+#if defined(__CUDA_ARCH__)
+    return static_cast<Index>(threadIdx.x);
+#else
+    return 0;
+#endif
+  }
+  /// Waits for the whole team; what was written before can be read after.
+  ICLOTH_HD void barrier() const {
+#if defined(__CUDA_ARCH__)
+    __syncthreads();
+#endif
+  }
+
+  /// body(i) for i = 0 … n − 1 shared among the threads, then a barrier.
+  template <class Body>
+  ICLOTH_HD void for_each(Index n, const Body& body) const {
+    for (std::int64_t i = rank(); i < n; i += size()) body(static_cast<Index>(i));
+    barrier();
+  }
+
+  /// body() on one thread, then a barrier.
+  template <class Body>
+  ICLOTH_HD void single(const Body& body) const {
+    if (rank() == 0) body();
+    barrier();
+  }
+
+  /// Combines body(0) … body(n − 1) by `op` in a fixed order; every thread gets the result.
+  /// The order differs between CPU and CUDA. Implies barriers.
+  template <class T, class Body, class Op>
+  ICLOTH_HD T reduce(Index n, T identity, const Body& body, const Op& op) const {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= kMaxReduceBytes);
+    T value = identity;
+    for (std::int64_t i = rank(); i < n; i += size()) {
+      value = op(value, static_cast<T>(body(static_cast<Index>(i))));
+    }
+    return combine(value, op);
+  }
+
+ private:
+#if defined(__CUDA_ARCH__)
+  template <class T, class Op>
+  __device__ static T combine(T value, const Op& op) {
+    // Raw bytes: shared variables must not have constructors.
+    __shared__ alignas(16) unsigned char storage[kThreads * sizeof(T)];
+    T* shared = reinterpret_cast<T*>(storage);
+    const int me = static_cast<int>(threadIdx.x);
+    shared[me] = value;
+    for (int half = kThreads / 2; half > 0; half /= 2) {
+      __syncthreads();
+      if (me < half) shared[me] = op(shared[me], shared[me + half]);
+    }
+    __syncthreads();
+    const T result = shared[0];
+    __syncthreads();  // the next reduction reuses the storage
+    return result;
+  }
+#else
+  template <class T, class Op>
+  ICLOTH_HD static T combine(T value, const Op&) {
+    return value;
+  }
+#endif
+};
+
+}  // namespace icloth::ICLOTH_BUILD
