@@ -1,0 +1,263 @@
+#include "sim/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/error.h"
+
+namespace icloth {
+namespace {
+
+constexpr double kSmallestArea = 1e-12;  // [m²]; below it Dm⁻¹ is noise
+using Corners = std::array<Vec2d, 3>;    // material coordinates of a face [m]
+
+struct HalfEdge {
+  std::array<Index, 2> edge;  // smaller vertex first
+  Index face;
+  Index corner;  // the edge runs from this corner of the face to the next
+};
+
+double cross2(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
+
+std::string element(const Cloth& cloth, const char* kind, std::size_t number) {
+  return "cloth '" + cloth.name + "', " + kind + " " + std::to_string(number);
+}
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+const std::vector<Vec3d>& rest_positions(const Cloth& cloth) {
+  return cloth.rest.empty() ? cloth.mesh.positions : cloth.rest;
+}
+
+double rest_area(const Cloth& cloth, const Triangle& t) {
+  const auto& x = rest_positions(cloth);
+  return 0.5 * norm(cross(x[at(t[1])] - x[at(t[0])], x[at(t[2])] - x[at(t[0])]));
+}
+
+double uv_area(const Corners& u) { return 0.5 * std::fabs(cross2(u[1] - u[0], u[2] - u[0])); }
+
+void check_cloth(const Cloth& cloth) {
+  const std::size_t count = cloth.mesh.positions.size();
+  if (!cloth.rest.empty() && cloth.rest.size() != count)
+    throw InputError("cloth '" + cloth.name + "': the rest shape has " +
+                     std::to_string(cloth.rest.size()) + " vertices, expected " +
+                     std::to_string(count));
+  if (!cloth.mesh.uv.empty() && cloth.mesh.uv.size() != cloth.mesh.faces.size())
+    throw InputError("cloth '" + cloth.name + "': uv of " + std::to_string(cloth.mesh.uv.size()) +
+                     " faces, expected " + std::to_string(cloth.mesh.faces.size()));
+  for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
+    for (Index v : cloth.mesh.faces[f])
+      if (v < 0 || at(v) >= count)
+        throw InputError(element(cloth, "face", f) + ": vertex " + std::to_string(v) +
+                         ", expected 0 to " + std::to_string(count - 1));
+  for (Index v : cloth.pins)
+    if (v < 0 || at(v) >= count)
+      throw InputError("cloth '" + cloth.name + "': pinned vertex " + std::to_string(v) +
+                       ", expected 0 to " + std::to_string(count - 1));
+}
+
+/// Texture coordinates that are not in metres (the unit square, say) tell the weft direction only.
+bool uv_is_metric(const Cloth& cloth) {
+  double flat = 0, rest = 0;
+  for (std::size_t f = 0; f < cloth.mesh.uv.size(); ++f) {
+    flat += uv_area(cloth.mesh.uv[f]);
+    rest += rest_area(cloth, cloth.mesh.faces[f]);
+  }
+  return flat > rest / 1.5 && flat < rest * 1.5;
+}
+
+/// Direction of weft in the plane of a rest triangle, before it is projected and normalized.
+Vec3d weft_direction(const Cloth& cloth, std::size_t f, const std::array<Vec3d, 3>& x, Vec3d n) {
+  if (!cloth.mesh.uv.empty()) {
+    // The direction in which v stays and u grows.
+    const Corners& u = cloth.mesh.uv[f];
+    const Vec2d a = u[1] - u[0], b = u[2] - u[0];
+    const double det = cross2(a, b);
+    if (det != 0) return (1 / det) * (b.y * (x[1] - x[0]) - a.y * (x[2] - x[0]));
+  }
+  // Within 6° of the x axis the projection is mostly noise.
+  return std::fabs(n.x) < 0.995 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
+}
+
+/// The rest triangle laid flat, weft along the first coordinate.
+Corners flattened(const Cloth& cloth, std::size_t f) {
+  const Triangle& t = cloth.mesh.faces[f];
+  const auto& rest = rest_positions(cloth);
+  const std::array<Vec3d, 3> x{rest[at(t[0])], rest[at(t[1])], rest[at(t[2])]};
+  const Vec3d n = normalized(cross(x[1] - x[0], x[2] - x[0]));
+  const Vec3d weft = weft_direction(cloth, f, x, n);
+  const Vec3d u = normalized(weft - dot(weft, n) * n), v = cross(n, u);
+  const auto flat = [&](Vec3d p) { return Vec2d{dot(p - x[0], u), dot(p - x[0], v)}; };
+  return {flat(x[0]), flat(x[1]), flat(x[2])};
+}
+
+/// Material coordinates of every face of a cloth.
+std::vector<Corners> material_corners(const Cloth& cloth) {
+  if (uv_is_metric(cloth)) return cloth.mesh.uv;
+  std::vector<Corners> corners(cloth.mesh.faces.size());
+  for (std::size_t f = 0; f < corners.size(); ++f) corners[f] = flattened(cloth, f);
+  return corners;
+}
+
+/// Signed dihedral angle of the rest shape; hinge roles as in world.h.
+double rest_angle(const std::vector<Vec3d>& x, const std::array<Index, 4>& v) {
+  const Vec3d edge = x[at(v[1])] - x[at(v[0])];
+  const Vec3d n0 = normalized(cross(edge, x[at(v[2])] - x[at(v[0])]));
+  const Vec3d n1 = normalized(cross(x[at(v[3])] - x[at(v[0])], edge));
+  return std::atan2(dot(normalized(edge), cross(n0, n1)), dot(n0, n1));
+}
+
+/// All half-edges of an object, sorted so that those of one edge stand together.
+std::vector<HalfEdge> sorted_half_edges(const World& world, const WorldObject& object) {
+  std::vector<HalfEdge> half_edges;
+  half_edges.reserve(3 * at(object.face_count));
+  for (Index f = object.first_face; f < object.first_face + object.face_count; ++f) {
+    const Triangle& t = world.face[at(f)];
+    for (Index corner = 0; corner < 3; ++corner) {
+      const Index a = t[at(corner)], b = t[at((corner + 1) % 3)];
+      half_edges.push_back({{std::min(a, b), std::max(a, b)}, f, corner});
+    }
+  }
+  std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
+  });
+  return half_edges;
+}
+
+void append_object(World& world, const std::string& name, bool cloth, std::size_t source,
+                   const TriangleMesh& mesh, const std::vector<Vec3d>& positions) {
+  WorldObject object{name,
+                     cloth,
+                     static_cast<Index>(source),
+                     world.vertices,
+                     static_cast<Index>(positions.size()),
+                     world.faces,
+                     static_cast<Index>(mesh.faces.size())};
+  world.position.insert(world.position.end(), positions.begin(), positions.end());
+  world.object.resize(world.position.size(), static_cast<Index>(world.objects.size()));
+  for (const Triangle& t : mesh.faces)
+    world.face.push_back(
+        {t[0] + object.first_vertex, t[1] + object.first_vertex, t[2] + object.first_vertex});
+  world.vertices += object.vertex_count;
+  world.faces += object.face_count;
+  world.objects.push_back(std::move(object));
+}
+
+/// Areas, masses and material frames of a cloth that was appended last.
+void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corners>& corners) {
+  const WorldObject& object = world.objects.back();
+  const auto& rest = rest_positions(cloth);
+  world.rest.insert(world.rest.end(), rest.begin(), rest.end());
+  world.area.resize(at(world.vertices), 0.0);
+  world.mass.resize(at(world.vertices), 0.0);
+  world.pinned.resize(at(world.vertices), 0);
+  for (std::size_t f = 0; f < corners.size(); ++f) {
+    const Vec2d a = corners[f][1] - corners[f][0], b = corners[f][2] - corners[f][0];
+    const double det = cross2(a, b), area = 0.5 * std::fabs(det);
+    if (!(area >= kSmallestArea && rest_area(cloth, cloth.mesh.faces[f]) >= kSmallestArea))
+      throw InputError(element(cloth, "face", f) + ": rest area " + std::to_string(area) +
+                       " m², expected more than 1e-12");
+    world.face_area.push_back(area);
+    world.face_inverse.push_back({b.y / det, -b.x / det, -a.y / det, a.x / det});
+    world.face_material.push_back(object.source);
+    for (Index v : cloth.mesh.faces[f]) world.area[at(object.first_vertex + v)] += area / 3;
+  }
+  for (Index v = 0; v < object.vertex_count; ++v) {
+    const std::size_t i = at(object.first_vertex + v);
+    world.mass[i] = cloth.material.density * world.area[i];
+    if (!(world.mass[i] > 0 && std::isfinite(world.mass[i])))
+      throw InputError(element(cloth, "vertex", at(v)) +
+                       (world.area[i] > 0 ? ": density must be above 0"
+                                          : ": used by no face, expected at least one"));
+  }
+  for (Index v : cloth.pins) world.pinned[at(object.first_vertex + v)] = 1;
+}
+
+/// Hinge between two faces of one edge; `first` gives the direction of the edge.
+Hinge make_hinge(const World& world, const WorldObject& object, const std::vector<Corners>& corners,
+                 bool has_uv, const HalfEdge& first, const HalfEdge& second) {
+  const Triangle& face0 = world.face[at(first.face)];
+  const Triangle& face1 = world.face[at(second.face)];
+  const Corners& u0 = corners[at(first.face - object.first_face)];
+  const Corners& u1 = corners[at(second.face - object.first_face)];
+  const std::size_t i = at(first.corner), j = at(second.corner);
+  Hinge hinge;
+  hinge.vertices = {face0[i], face0[(i + 1) % 3], face0[(i + 2) % 3], face1[(j + 2) % 3]};
+  hinge.face0 = first.face;
+  hinge.face1 = second.face;
+  const Vec2d edge = u0[(i + 1) % 3] - u0[i];
+  hinge.rest_length = std::hypot(edge.x, edge.y);
+  hinge.direction = std::atan2(std::fabs(edge.y), std::fabs(edge.x));
+  hinge.rest_area = world.face_area[at(first.face)] + world.face_area[at(second.face)];
+  // A seam joins two places of the pattern: its flaps were never one flat piece, and the fold of
+  // the given shape is not a rest shape of theirs.
+  const bool same_way = face1[j] == face0[i];
+  const Vec2d start = u1[same_way ? j : (j + 1) % 3] - u0[i];
+  const Vec2d end = u1[same_way ? (j + 1) % 3 : j] - u0[(i + 1) % 3];
+  const double gap = std::hypot(start.x, start.y) + std::hypot(end.x, end.y);
+  const bool seam = has_uv && gap > 1e-3 * hinge.rest_length;
+  hinge.rest_angle = seam ? 0.0 : rest_angle(world.rest, hinge.vertices);
+  return hinge;
+}
+
+/// Edges of an object; for a cloth also its hinges, one for every two faces of an edge.
+void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
+                  const std::vector<Corners>& corners) {
+  const std::vector<HalfEdge> half_edges = sorted_half_edges(world, object);
+  const bool metric_uv = cloth && uv_is_metric(*cloth);
+  for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
+    while (end < half_edges.size() && half_edges[end].edge == half_edges[begin].edge) ++end;
+    world.edge.push_back(half_edges[begin].edge);
+    if (!cloth) continue;
+    double area = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      area += world.face_area[at(half_edges[i].face)];
+      for (std::size_t j = i + 1; j < end; ++j) {
+        world.hinges.push_back(
+            make_hinge(world, object, corners, metric_uv, half_edges[i], half_edges[j]));
+        world.hinges.back().weight = 1.0 / static_cast<double>(end - begin - 1);
+      }
+    }
+    world.edge_area.push_back(area / 3);
+  }
+  world.edges = static_cast<Index>(world.edge.size());
+}
+
+double median_edge_length(const World& world) {
+  std::vector<double> lengths;
+  lengths.reserve(at(world.cloth_edges));
+  for (std::size_t e = 0; e < at(world.cloth_edges); ++e)
+    lengths.push_back(norm(world.rest[at(world.edge[e][1])] - world.rest[at(world.edge[e][0])]));
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+}  // namespace
+
+World make_world(const Scene& scene) {
+  World world;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const Cloth& cloth = scene.cloths[c];
+    check_cloth(cloth);
+    const std::vector<Corners> corners = material_corners(cloth);
+    append_object(world, cloth.name, true, c, cloth.mesh, cloth.mesh.positions);
+    append_rest_state(world, cloth, corners);
+    append_edges(world, world.objects.back(), &cloth, corners);
+  }
+  world.cloth_vertices = world.vertices;
+  world.cloth_edges = world.edges;
+  world.cloth_faces = world.faces;
+  std::vector<Vec3d> pose;
+  for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+    const Obstacle& obstacle = scene.obstacles[o];
+    obstacle.pose(0.0, pose);
+    append_object(world, obstacle.name, false, o, obstacle.mesh, pose);
+    append_edges(world, world.objects.back(), nullptr, {});
+  }
+  world.median_edge = median_edge_length(world);
+  return world;
+}
+
+}  // namespace icloth
