@@ -336,7 +336,9 @@ void Session::publish(bool always) {
   simulator_->positions(state.positions);
   state.handles = simulator_->handles();
   state.held.clear();
-  for (const auto& [id, grab] : held_) state.held.push_back(grab);
+  std::map<int, InputEvent> held = held_;
+  for (const InputEvent& event : pending_) track(held, event);
+  for (const auto& [id, grab] : held) state.held.push_back(grab);
   state.rewinds = rewinds_;
   state.report = report_;
   state.parameters = simulator_->parameters();

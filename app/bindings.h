@@ -1,0 +1,75 @@
+// Keys and mouse: one table generates the handlers, the F1 overlay, the hint bar and docs/keys.md.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace icloth {
+
+/// Codes are those of GLFW, so that its events need no translation (checked in the window).
+namespace key {
+inline constexpr int kSpace = 32, kPeriod = 46, kEscape = 256, kEnter = 257, kTab = 258,
+                     kRight = 262, kLeft = 263, kHome = 268, kF1 = 290, kF11 = 300, kF12 = 301,
+                     kKeypadEnter = 335;
+}  // namespace key
+namespace modifier {
+inline constexpr int kNone = 0, kShift = 1, kControl = 2;
+}  // namespace modifier
+namespace button {
+inline constexpr int kLeft = 0, kRight = 1, kMiddle = 2;
+}  // namespace button
+
+// clang-format off
+enum class Action {
+  none,
+  // hands
+  grab, grab_handle, add_handle, pin_point, unpin, park, cancel, release_selected, release_all,
+  grab_depth, grab_radius, grab_stiffness,
+  // camera
+  orbit, pan, dolly_drag, dolly, set_pivot, frame_selection, frame_all, menu, copy_camera,
+  paste_camera,
+  // simulation
+  play_pause, step, step_back, reset, undo, redo, save_session,
+  // window
+  view_shaded, view_wireframe, view_strain, toggle_panels, help, full_screen, screenshot, quit,
+};
+
+// clang-format on
+
+enum class Trigger { key, press, click, double_click, wheel };
+/// Whether the hand holds a grab.
+enum class Hand { any, holds, free };
+/// What is under the pointer when a button goes down.
+enum class Under { any, cloth, handle, other };
+
+struct Binding {
+  Trigger trigger;
+  int code;       ///< key or button, 0 for the wheel
+  int modifiers;  ///< exactly these
+  Hand hand;
+  Under under;
+  Action action;
+  std::string_view group;  ///< heading, the same for neighbours
+  std::string_view input;  ///< as people call it; empty: another way to the action above
+  std::string_view text;   ///< what it does
+  std::string_view hint;   ///< few words for the hint bar; empty: not shown there
+};
+
+/// The first row that fits is the one that counts.
+std::span<const Binding> binding_table();
+
+struct InputState {
+  int modifiers = 0;
+  bool hand_holds = false;
+  Under under = Under::any;
+};
+Action find_action(Trigger trigger, int code, const InputState& state);
+
+/// "Left drag grab · P park · …" for what can be done now.
+std::string hint_line(bool hand_holds);
+
+/// The contents of docs/keys.md.
+std::string bindings_markdown();
+
+}  // namespace icloth

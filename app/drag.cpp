@@ -1,0 +1,217 @@
+#include "app/drag.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace icloth {
+
+namespace {
+
+constexpr int kMaxId = 999;                           ///< scripted grabs are numbered from 1000
+constexpr double kMinDepth = 0.01, kMaxDepth = 1000;  ///< [m]
+constexpr double kDepthPerNotch = 1.04, kRadiusPerNotch = 1.15, kStiffnessPerNotch = 1.25;
+
+double scaled(const char* parameter, double value, double factor) {
+  const ParameterInfo* info = find_parameter(parameter);
+  return std::clamp(value * factor, info ? info->minimum : 0, info ? info->maximum : 1e9);
+}
+
+}  // namespace
+
+Vec3d point_at_depth(const CursorRay& ray, double depth) {
+  const double slope = dot(ray.direction, ray.forward);
+  return ray.origin + (depth / std::max(slope, 1e-6)) * ray.direction;
+}
+
+void Drag::set_defaults(double radius, double stiffness) {
+  radius_ = radius;
+  stiffness_ = stiffness;
+}
+
+Handle* Drag::find(int id) {
+  const auto it = std::ranges::find(handles_, id, &Handle::id);
+  return it == handles_.end() ? nullptr : &*it;
+}
+
+const Handle* Drag::find(int id) const { return const_cast<Drag*>(this)->find(id); }
+
+int Drag::free_id() const {
+  int id = 1;
+  while (find(id)) ++id;
+  return id;
+}
+
+void Drag::send(InputEvent::Kind kind, const Handle& handle) {
+  InputEvent event;
+  event.kind = kind;
+  event.handle = handle.id;
+  event.face = handle.face;
+  event.barycentric = handle.barycentric;
+  event.target = handle.target;
+  event.radius = handle.radius;
+  event.stiffness = handle.stiffness;
+  events_.push_back(event);
+}
+
+int Drag::add(const ClothHit& hit) {
+  const int id = free_id();
+  if (id > kMaxId) return 0;
+  handles_.push_back({id, hit.face, hit.barycentric, hit.point, radius_, stiffness_});
+  send(InputEvent::Kind::grab, handles_.back());
+  return id;
+}
+
+void Drag::grasp(Handle& handle, const CursorRay& ray) {
+  active_ = handle.id;
+  was_parked_ = handle.parked;
+  handle.parked = false;
+  handle.selected = true;
+  follow_camera(ray);
+}
+
+void Drag::begin(const CursorRay& ray, const ClothHit& hit) {
+  end();
+  before_ = handles_;
+  deselect();
+  if (Handle* handle = find(add(hit))) grasp(*handle, ray);
+}
+
+void Drag::begin_handle(int id, const CursorRay& ray, bool add_to_selection) {
+  end();
+  Handle* handle = find(id);
+  if (!handle) return;
+  before_ = handles_;
+  if (!add_to_selection && !handle->selected) deselect();
+  grasp(*handle, ray);
+}
+
+void Drag::pin(const ClothHit& hit) {
+  if (Handle* handle = find(add(hit))) handle->parked = true;
+}
+
+void Drag::follow_camera(const CursorRay& ray) {
+  const Handle* handle = find(active_);
+  if (!handle) return;
+  depth_ = std::clamp(dot(handle->target - ray.origin, ray.forward), kMinDepth, kMaxDepth);
+  offset_ = handle->target - point_at_depth(ray, depth_);
+}
+
+void Drag::move_to(Vec3d target) {
+  const Handle* active = find(active_);
+  if (!active || active->target == target) return;
+  const Vec3d delta = target - active->target;
+  for (Handle& handle : handles_) {
+    if (handle.id != active_ && !(handle.selected && handle.parked)) continue;
+    handle.target = handle.id == active_ ? target : handle.target + delta;
+    send(InputEvent::Kind::move, handle);
+  }
+}
+
+void Drag::move(const CursorRay& ray) { move_to(point_at_depth(ray, depth_) + offset_); }
+
+void Drag::change_depth(double notches, const CursorRay& ray) {
+  if (!grabbing()) return;
+  depth_ = std::clamp(depth_ * std::pow(kDepthPerNotch, notches), kMinDepth, kMaxDepth);
+  move(ray);
+}
+
+/// Radius and stiffness belong to a grab: the solver is told by letting go and grabbing again.
+void Drag::regrip(Handle& handle) {
+  handle.radius = radius_;
+  handle.stiffness = stiffness_;
+  send(InputEvent::Kind::release, handle);
+  send(InputEvent::Kind::grab, handle);
+}
+
+void Drag::change_radius(double notches) {
+  radius_ = scaled("grab.radius", radius_, std::pow(kRadiusPerNotch, notches));
+  if (Handle* handle = find(active_)) regrip(*handle);
+}
+
+void Drag::change_stiffness(double notches) {
+  stiffness_ = scaled("grab.stiffness", stiffness_, std::pow(kStiffnessPerNotch, notches));
+  if (Handle* handle = find(active_)) regrip(*handle);
+}
+
+void Drag::end() {
+  if (Handle* handle = find(active_)) {
+    if (was_parked_) {
+      handle->parked = true;
+    } else {
+      release(active_);
+    }
+  }
+  active_ = 0;
+}
+
+void Drag::park() {
+  Handle* handle = find(active_);
+  if (!handle) return;
+  handle->parked = true;
+  active_ = 0;
+}
+
+void Drag::cancel() {
+  if (!grabbing()) return;
+  if (!was_parked_) return end();
+  active_ = 0;
+  for (const Handle& old : before_) {
+    Handle* handle = find(old.id);
+    if (!handle) continue;
+    const bool regrip_needed = handle->radius != old.radius || handle->stiffness != old.stiffness;
+    const bool moved = !(handle->target == old.target);
+    *handle = old;
+    if (regrip_needed) {
+      send(InputEvent::Kind::release, old);
+      send(InputEvent::Kind::grab, old);
+    } else if (moved) {
+      send(InputEvent::Kind::move, old);
+    }
+  }
+}
+
+void Drag::deselect() {
+  for (Handle& handle : handles_) handle.selected = false;
+}
+
+void Drag::release(int id) {
+  const auto it = std::ranges::find(handles_, id, &Handle::id);
+  if (it == handles_.end()) return;
+  send(InputEvent::Kind::release, *it);
+  handles_.erase(it);
+  if (active_ == id) active_ = 0;
+}
+
+void Drag::release_selected() {
+  if (grabbing()) return release(active_);
+  std::vector<int> ids;
+  for (const Handle& handle : handles_) {
+    if (handle.selected) ids.push_back(handle.id);
+  }
+  if (ids.empty() && !handles_.empty()) ids.push_back(handles_.back().id);
+  for (const int id : ids) release(id);
+}
+
+void Drag::release_all() {
+  while (!handles_.empty()) release(handles_.back().id);
+}
+
+void Drag::restore(std::span<const InputEvent> held) {
+  const std::vector<Handle> had = std::exchange(handles_, {});
+  active_ = 0;
+  events_.clear();
+  for (const InputEvent& grab : held) {
+    if (grab.handle > kMaxId) continue;
+    handles_.push_back(
+        {grab.handle, grab.face, grab.barycentric, grab.target, grab.radius, grab.stiffness, true});
+  }
+  // A grab may be on its way to the solver while the news of the jump is on its way here.
+  for (const Handle& handle : had) {
+    if (!find(handle.id)) send(InputEvent::Kind::release, handle);
+  }
+}
+
+std::vector<InputEvent> Drag::take_events() { return std::exchange(events_, {}); }
+
+}  // namespace icloth
