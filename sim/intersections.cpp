@@ -1,0 +1,219 @@
+#include "sim/intersections.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+
+#if defined(ICLOTH_HAS_CGAL)
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#endif
+
+namespace icloth {
+namespace {
+
+using FaceCorners = std::array<Vec3d, 3>;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct Box {
+  Vec3d low, high;
+
+  static Box empty() {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    return {{inf, inf, inf}, {-inf, -inf, -inf}};
+  }
+  void add(const Box& b) {
+    low = {std::min(low.x, b.low.x), std::min(low.y, b.low.y), std::min(low.z, b.low.z)};
+    high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y), std::max(high.z, b.high.z)};
+  }
+  bool overlaps(const Box& b) const {
+    return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y &&
+           low.z <= b.high.z && b.low.z <= high.z;
+  }
+};
+
+Box box_of(const FaceCorners& t) {
+  Box box = Box::empty();
+  for (Vec3d p : t) box.add({p, p});
+  return box;
+}
+
+/// Boxes in a binary tree, split at the median; nodes in depth-first order.
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), Index{0});
+    if (!boxes.empty()) build(0, static_cast<Index>(boxes.size()));
+  }
+
+  /// Calls visit(i) for every box i that overlaps `query`.
+  template <class Visit>
+  void visit(const Box& query, const Visit& visit_box) const {
+    for (std::size_t n = 0; n < nodes_.size();) {
+      const Node& node = nodes_[n];
+      if (!node.box.overlaps(query)) {
+        n = at(node.skip);
+        continue;
+      }
+      for (Index i = node.first; i < node.first + node.count; ++i)
+        if (boxes_[at(order_[at(i)])].overlaps(query)) visit_box(order_[at(i)]);
+      ++n;
+    }
+  }
+
+ private:
+  static constexpr Index kLeafSize = 4;
+
+  struct Node {
+    Box box;
+    Index first = 0, count = 0;  // range in order_ of a leaf, empty otherwise
+    Index skip = 0;              // next node when this one is not entered
+  };
+
+  void build(Index begin, Index end) {
+    const std::size_t n = nodes_.size();
+    nodes_.push_back({Box::empty(), begin, end - begin <= kLeafSize ? end - begin : 0, 0});
+    for (Index i = begin; i < end; ++i) nodes_[n].box.add(boxes_[at(order_[at(i)])]);
+    if (end - begin > kLeafSize) {
+      const Vec3d size = nodes_[n].box.high - nodes_[n].box.low;
+      const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
+                        : size.y >= size.z                   ? &Vec3d::y
+                                                             : &Vec3d::z;
+      const Index middle = begin + (end - begin) / 2;
+      std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                       [&](Index a, Index b) {
+                         const Box &s = boxes_[at(a)], &t = boxes_[at(b)];
+                         return s.low.*axis + s.high.*axis < t.low.*axis + t.high.*axis;
+                       });
+      build(begin, middle);
+      build(middle, end);
+    }
+    nodes_[n].skip = static_cast<Index>(nodes_.size());
+  }
+
+  std::span<const Box> boxes_;
+  std::vector<Index> order_;
+  std::vector<Node> nodes_;
+};
+
+/// Side of d against the plane a b c: −1 or +1 when it is certain in spite of rounding, else 0.
+/// Bound of Shewchuk 1997, "Adaptive precision floating-point arithmetic", Section 4.3.
+int certain_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+  const Vec3d u = a - d, v = b - d, w = c - d;
+  const double vw0 = v.x * w.y, vw1 = w.x * v.y, wu0 = w.x * u.y, wu1 = u.x * w.y;
+  const double uv0 = u.x * v.y, uv1 = v.x * u.y;
+  const double det = u.z * (vw0 - vw1) + v.z * (wu0 - wu1) + w.z * (uv0 - uv1);
+  const double size = (std::fabs(vw0) + std::fabs(vw1)) * std::fabs(u.z) +
+                      (std::fabs(wu0) + std::fabs(wu1)) * std::fabs(v.z) +
+                      (std::fabs(uv0) + std::fabs(uv1)) * std::fabs(w.z);
+  // The second term covers products that underflow.
+  const double bound = 8.0 * 0x1p-53 * size + 1e-280;
+  return det > bound ? 1 : det < -bound ? -1 : 0;
+}
+
+/// True when the segment p q certainly does not touch the triangle.
+bool certainly_misses(Vec3d p, Vec3d q, const FaceCorners& t) {
+  const int above = certain_side(t[0], t[1], t[2], p);
+  if (above != 0 && above == certain_side(t[0], t[1], t[2], q)) return true;
+  int signs = 0;  // bit 0: left of an edge seen along p q, bit 1: right of one
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int side = certain_side(p, q, t[k], t[(k + 1) % 3]);
+    if (side != 0) signs |= side > 0 ? 1 : 2;
+  }
+  return signs == 3;
+}
+
+/// Two triangles meet only where an edge of one meets the other.
+bool certainly_disjoint(const FaceCorners& s, const FaceCorners& t) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!certainly_misses(s[k], s[(k + 1) % 3], t) || !certainly_misses(t[k], t[(k + 1) % 3], s))
+      return false;
+  return true;
+}
+
+#if defined(ICLOTH_HAS_CGAL)
+bool intersect(const FaceCorners& s, const FaceCorners& t) {
+  if (certainly_disjoint(s, t)) return false;
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  const auto triangle = [](const FaceCorners& c) {
+    const auto point = [](Vec3d p) { return Kernel::Point_3(p.x, p.y, p.z); };
+    return Kernel::Triangle_3(point(c[0]), point(c[1]), point(c[2]));
+  };
+  const Kernel::Triangle_3 a = triangle(s), b = triangle(t);
+  // A face without area has no plane; cloths with one are refused at load, bodies have some.
+  if (a.is_degenerate() || b.is_degenerate()) return false;
+  return CGAL::do_intersect(a, b);
+}
+#else
+/// Without exact arithmetic, what is not certainly disjoint counts as intersecting.
+bool intersect(const FaceCorners& s, const FaceCorners& t) { return !certainly_disjoint(s, t); }
+#endif
+
+bool share_vertex(const Triangle& a, const Triangle& b) {
+  for (Index v : a)
+    if (v == b[0] || v == b[1] || v == b[2]) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
+                                                  std::span<const Triangle> faces,
+                                                  std::span<const int> group) {
+  std::vector<FaceCorners> corners(faces.size());
+  std::vector<Box> boxes(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Triangle& t = faces[f];
+    corners[f] = {positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]};
+    boxes[f] = box_of(corners[f]);
+  }
+  const BoxTree tree(boxes);
+  const auto is_obstacle = [&](Index f) { return !group.empty() && group[at(f)] < 0; };
+
+  std::vector<IntersectingFaces> found;
+  std::mutex lock;  // the order of arrival is undone by the sort below
+  tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index a) {
+    if (is_obstacle(a)) return;
+    tree.visit(boxes[at(a)], [&](Index b) {
+      if (b <= a && !is_obstacle(b)) return;  // found from the other side
+      if (share_vertex(faces[at(a)], faces[at(b)])) return;
+      if (!intersect(corners[at(a)], corners[at(b)])) return;
+      const std::lock_guard guard(lock);
+      found.push_back({std::min(a, b), std::max(a, b)});
+    });
+  });
+  std::ranges::sort(found, [](const IntersectingFaces& s, const IntersectingFaces& t) {
+    return s.a != t.a ? s.a < t.a : s.b < t.b;
+  });
+  return found;
+}
+
+std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision) {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> faces;
+  std::vector<int> group;
+  const auto append = [&](const TriangleMesh& mesh, const std::vector<Vec3d>& pose, int number) {
+    const auto first = static_cast<Index>(positions.size());
+    positions.insert(positions.end(), pose.begin(), pose.end());
+    for (const Triangle& t : mesh.faces)
+      faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+    group.resize(faces.size(), number);
+  };
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    append(scene.cloths[c].mesh, scene.cloths[c].mesh.positions, static_cast<int>(c));
+  std::vector<Vec3d> pose;
+  for (const Obstacle& obstacle : scene.obstacles) {
+    obstacle.pose(0.0, pose);
+    append(obstacle.mesh, pose, -1);
+  }
+  if (single_precision)
+    for (Vec3d& p : positions) p = convert<double>(convert<float>(p));
+  return find_intersections(positions, faces, group);
+}
+
+}  // namespace icloth
