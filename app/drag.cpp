@@ -29,12 +29,12 @@ void Drag::set_defaults(double radius, double stiffness) {
   stiffness_ = stiffness;
 }
 
-Handle* Drag::find(int id) {
+Handle* Drag::get(int id) {
   const auto it = std::ranges::find(handles_, id, &Handle::id);
   return it == handles_.end() ? nullptr : &*it;
 }
 
-const Handle* Drag::find(int id) const { return const_cast<Drag*>(this)->find(id); }
+const Handle* Drag::find(int id) const { return const_cast<Drag*>(this)->get(id); }
 
 int Drag::free_id() const {
   int id = 1;
@@ -74,12 +74,12 @@ void Drag::begin(const CursorRay& ray, const ClothHit& hit) {
   end();
   before_ = handles_;
   deselect();
-  if (Handle* handle = find(add(hit))) grasp(*handle, ray);
+  if (Handle* handle = get(add(hit))) grasp(*handle, ray);
 }
 
 void Drag::begin_handle(int id, const CursorRay& ray, bool add_to_selection) {
   end();
-  Handle* handle = find(id);
+  Handle* handle = get(id);
   if (!handle) return;
   before_ = handles_;
   if (!add_to_selection && !handle->selected) deselect();
@@ -87,7 +87,7 @@ void Drag::begin_handle(int id, const CursorRay& ray, bool add_to_selection) {
 }
 
 void Drag::pin(const ClothHit& hit) {
-  if (Handle* handle = find(add(hit))) handle->parked = true;
+  if (Handle* handle = get(add(hit))) handle->parked = true;
 }
 
 void Drag::follow_camera(const CursorRay& ray) {
@@ -126,16 +126,16 @@ void Drag::regrip(Handle& handle) {
 
 void Drag::change_radius(double notches) {
   radius_ = scaled("grab.radius", radius_, std::pow(kRadiusPerNotch, notches));
-  if (Handle* handle = find(active_)) regrip(*handle);
+  if (Handle* handle = get(active_)) regrip(*handle);
 }
 
 void Drag::change_stiffness(double notches) {
   stiffness_ = scaled("grab.stiffness", stiffness_, std::pow(kStiffnessPerNotch, notches));
-  if (Handle* handle = find(active_)) regrip(*handle);
+  if (Handle* handle = get(active_)) regrip(*handle);
 }
 
 void Drag::end() {
-  if (Handle* handle = find(active_)) {
+  if (Handle* handle = get(active_)) {
     if (was_parked_) {
       handle->parked = true;
     } else {
@@ -146,7 +146,7 @@ void Drag::end() {
 }
 
 void Drag::park() {
-  Handle* handle = find(active_);
+  Handle* handle = get(active_);
   if (!handle) return;
   handle->parked = true;
   active_ = 0;
@@ -157,7 +157,7 @@ void Drag::cancel() {
   if (!was_parked_) return end();
   active_ = 0;
   for (const Handle& old : before_) {
-    Handle* handle = find(old.id);
+    Handle* handle = get(old.id);
     if (!handle) continue;
     const bool regrip_needed = handle->radius != old.radius || handle->stiffness != old.stiffness;
     const bool moved = !(handle->target == old.target);

@@ -79,7 +79,7 @@ class Drag {
   std::vector<InputEvent> take_events();
 
  private:
-  Handle* find(int id);
+  Handle* get(int id);
   int free_id() const;
   int add(const ClothHit& hit);
   void grasp(Handle& handle, const CursorRay& ray);
