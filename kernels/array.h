@@ -34,7 +34,7 @@ namespace icloth::ICLOTH_BUILD {
 template <class T>
 class View {
  public:
-  ICLOTH_HD View() = default;
+  View() = default;
   ICLOTH_HD View(T* data, Index size) : data_(data), size_(size) {}
   template <class U>
   requires std::is_same_v<T, const U> ICLOTH_HD View(View<U> other)

@@ -1,0 +1,44 @@
+// Where arrays live in the CUDA build: memory of the current device.
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/cuda_check.h"
+
+namespace icloth::ICLOTH_BUILD::memory {
+
+inline void* allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  ICLOTH_CUDA_CHECK("allocate array", cudaMalloc(&memory, bytes));
+  return memory;
+}
+/// Unchecked: it runs in destructors, at program exit even after the driver has shut down.
+inline void release(void* memory) noexcept { static_cast<void>(cudaFree(memory)); }
+
+inline void copy_to_host(void* host, const void* array, std::size_t bytes) {
+  ICLOTH_CUDA_CHECK("download array", cudaMemcpy(host, array, bytes, cudaMemcpyDeviceToHost));
+}
+inline void copy_from_host(void* array, const void* host, std::size_t bytes) {
+  ICLOTH_CUDA_CHECK("upload array", cudaMemcpy(array, host, bytes, cudaMemcpyHostToDevice));
+}
+inline void copy(void* to, const void* from, std::size_t bytes) {
+  ICLOTH_CUDA_CHECK("copy array", cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice));
+}
+inline void fill_bytes(void* array, int byte, std::size_t bytes) {
+  ICLOTH_CUDA_CHECK("fill array", cudaMemsetAsync(array, byte, bytes));
+}
+
+template <class T>
+__global__ void fill_kernel(T* array, Index n, T value) {
+  const auto i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < n) array[i] = value;
+}
+template <class T>
+void fill(T* array, Index n, T value) {
+  constexpr int kThreads = 256;
+  const unsigned blocks = (static_cast<unsigned>(n) + kThreads - 1) / kThreads;
+  fill_kernel<<<blocks, kThreads>>>(array, n, value);
+  ICLOTH_CUDA_CHECK("fill array", cudaGetLastError());
+}
+
+}  // namespace icloth::ICLOTH_BUILD::memory
