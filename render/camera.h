@@ -1,14 +1,10 @@
 // A camera that orbits a target; Y is up.
 #pragma once
 
-#include <array>
-
+#include "render/matrix.h"
 #include "sim/scene.h"
 
 namespace icloth {
-
-/// Column-major, as OpenGL takes it.
-using Matrix4 = std::array<double, 16>;
 
 struct Ray {
   Vec3d origin;     ///< [m]

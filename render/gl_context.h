@@ -28,6 +28,9 @@ void load_gl(GlLoader loader);
 /// "RENDERER, OpenGL VERSION" of the current context.
 std::string gl_renderer();
 
+/// True when the current context draws on the processor (llvmpipe and the like).
+bool gl_is_software();
+
 /// Throws DeviceError naming `where` when OpenGL has recorded an error since the last call.
 void check_gl(const char* where);
 

@@ -1,0 +1,64 @@
+#include "render/gl_context.h"
+
+#include <glad/gl.h>
+
+#include <cstdio>
+
+#include "render/gl_context_egl.h"
+#include "render/shared_vertices.h"
+#include "sim/error.h"
+
+namespace icloth {
+
+namespace {
+
+std::string gl_text(GLenum name) {
+  const GLubyte* text = glGetString(name);
+  return text ? reinterpret_cast<const char*>(text) : "unknown";
+}
+
+}  // namespace
+
+void load_gl(GlLoader loader) {
+  const int version = gladLoadGL(loader);
+  if (version == 0) throw DeviceError("OpenGL: no function could be loaded, expected 4.5 core");
+  if (version < GLAD_MAKE_VERSION(4, 5)) {
+    throw DeviceError("OpenGL " + std::to_string(GLAD_VERSION_MAJOR(version)) + "." +
+                      std::to_string(GLAD_VERSION_MINOR(version)) + " of " + gl_text(GL_RENDERER) +
+                      ", expected 4.5 core");
+  }
+}
+
+std::string gl_renderer() { return gl_text(GL_RENDERER) + ", OpenGL " + gl_text(GL_VERSION); }
+
+bool gl_is_software() {
+  const std::string renderer = gl_text(GL_RENDERER);
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
+void check_gl(const char* where) {
+  const GLenum error = glGetError();
+  if (error == GL_NO_ERROR) return;
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  char code[16];
+  std::snprintf(code, sizeof code, "0x%04x", error);
+  throw DeviceError(std::string("OpenGL error ") + code + " in " + where);
+}
+
+std::string gl_info() {
+  try {
+    const std::unique_ptr<GlContext> context = make_egl_context();
+    std::string reason;
+    const bool interop = SharedVertices::interop_available(&reason);
+    return "OpenGL: " + gl_renderer() + "\nOpenGL context: " + context->origin() +
+           "\nvertices reach the GPU by: " + (interop ? "CUDA-OpenGL interop" : "host copy") +
+           " (" + reason + ")\n";
+  } catch (const DeviceError& error) {
+    return std::string("OpenGL: none (") + error.what() + ")\n";
+  }
+}
+
+}  // namespace icloth

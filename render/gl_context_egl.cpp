@@ -1,0 +1,116 @@
+#include "render/gl_context_egl.h"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include <vector>
+
+#include "sim/error.h"
+
+namespace icloth {
+
+namespace {
+
+class EglContext final : public GlContext {
+ public:
+  EglContext(EGLDisplay display, EGLContext context, std::string origin)
+      : display_(display), context_(context), origin_(std::move(origin)) {}
+
+  // The display is not terminated: that would end other contexts of this program on it.
+  ~EglContext() override {
+    if (eglGetCurrentContext() == context_)
+      eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+  }
+
+  void make_current() override {
+    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+      throw DeviceError("EGL: the context of " + origin_ + " cannot be made current");
+  }
+
+  std::string origin() const override { return origin_; }
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_;
+  std::string origin_;
+};
+
+/// Remembers why each way failed, for the message at the end.
+using Tried = std::string;
+
+template <class Function>
+Function function(const char* name) {
+  return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
+std::string text(const char* value) { return value ? value : "unnamed"; }
+
+EGLContext create_context(EGLDisplay display) {
+  const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
+    config = EGL_NO_CONFIG_KHR;
+  const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                            4,
+                            EGL_CONTEXT_MINOR_VERSION,
+                            5,
+                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                            EGL_NONE};
+  return eglCreateContext(display, config, EGL_NO_CONTEXT, version);
+}
+
+/// A current context with its functions loaded, or nullptr and a reason in `tried`.
+std::unique_ptr<GlContext> try_display(EGLDisplay display, const std::string& name, Tried& tried) {
+  const auto fail = [&](const char* why) {
+    tried += (tried.empty() ? "" : "; ") + name + ": " + why;
+    return nullptr;
+  };
+  EGLint major = 0, minor = 0;
+  if (display == EGL_NO_DISPLAY) return fail("no display");
+  if (!eglInitialize(display, &major, &minor)) return fail("cannot be initialised");
+  if (!eglBindAPI(EGL_OPENGL_API)) return fail("OpenGL ES only");
+  const EGLContext context = create_context(display);
+  if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context");
+  const std::string origin = name + ", " + text(eglQueryString(display, EGL_VENDOR));
+  auto made = std::make_unique<EglContext>(display, context, origin);
+  try {
+    made->make_current();
+    load_gl(&eglGetProcAddress);
+  } catch (const DeviceError& error) {
+    return fail(error.what());
+  }
+  return made;
+}
+
+std::vector<EGLDeviceEXT> devices() {
+  const auto query = function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+  EGLint count = 0;
+  if (!query || !query(0, nullptr, &count) || count <= 0) return {};
+  std::vector<EGLDeviceEXT> list(static_cast<std::size_t>(count));
+  if (!query(count, list.data(), &count)) return {};
+  list.resize(static_cast<std::size_t>(count));
+  return list;
+}
+
+}  // namespace
+
+std::unique_ptr<GlContext> make_egl_context() {
+  Tried tried;
+  const auto display = function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  if (!display) throw DeviceError("EGL: no platform displays, expected EGL 1.5 or newer");
+  int number = 0;
+  for (EGLDeviceEXT device : devices()) {
+    const std::string name = "EGL device " + std::to_string(number++);
+    if (auto made = try_display(display(EGL_PLATFORM_DEVICE_EXT, device, nullptr), name, tried))
+      return made;
+  }
+  EGLDisplay surfaceless = display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (auto made = try_display(surfaceless, "EGL surfaceless", tried)) return made;
+  throw DeviceError("no OpenGL 4.5 core without a display (" + tried +
+                    "), expected a GPU driver with EGL or Mesa's llvmpipe");
+}
+
+}  // namespace icloth

@@ -1,0 +1,72 @@
+#include "render/lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace icloth {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr Vec3d kKey{-0.55, 0.95, 0.75};
+constexpr double kKeyRadius = 0.09;  // of the disc, seen from the cloth [rad]
+
+double fraction(double x) { return x - std::floor(x); }
+
+/// Two unit vectors across a direction.
+void axes(Vec3d direction, Vec3d& right, Vec3d& up) {
+  const Vec3d helper = std::fabs(direction.y) < 0.99 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  right = normalized(cross(helper, direction));
+  up = cross(direction, right);
+}
+
+}  // namespace
+
+Bounds bounds_of(std::span<const Vec3f> points) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  Vec3f low{kInfinite, kInfinite, kInfinite}, high = -low;
+  for (const Vec3f p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  if (points.empty()) low = high = {};
+  const Vec3d a = convert<double>(low), b = convert<double>(high);
+  return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a))};
+}
+
+LightSample light_sample(int i, int n) {
+  LightSample sample{};
+  sample.key = normalized(kKey);
+  sample.dome = {0, 1, 0};
+  if (n <= 1) return sample;
+  const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n))));
+  sample.pixel_x = (i % side + 0.5) / side - 0.5;
+  sample.pixel_y = (i / side % side + 0.5) / side - 0.5;
+
+  // Disc: an additive recurrence (Roberts 2018, the plastic number) mapped by equal areas.
+  const double u = fraction(0.5 + 0.7548776662466927 * i),
+               v = fraction(0.5 + 0.5698402909980532 * i);
+  const double r = kKeyRadius * std::sqrt(u);
+  Vec3d right, up;
+  axes(sample.key, right, up);
+  sample.key =
+      normalized(sample.key + r * std::cos(2 * kPi * v) * right + r * std::sin(2 * kPi * v) * up);
+
+  // Dome: a Fibonacci lattice; the heights are spread evenly, so is the area.
+  const double height = (i + 0.5) / n;
+  const double around = 2 * kPi * fraction(i * std::numbers::phi);
+  const double out = std::sqrt(1 - height * height);
+  sample.dome = {out * std::cos(around), height, out * std::sin(around)};
+  return sample;
+}
+
+Matrix4 light_matrix(const Bounds& bounds, Vec3d direction) {
+  Vec3d right, up;
+  axes(direction, right, up);
+  const Vec3d eye = bounds.centre + bounds.radius * direction;
+  return orthographic(1.02 * bounds.radius, 0, 2 * bounds.radius) * look(eye, right, up, direction);
+}
+
+}  // namespace icloth

@@ -1,0 +1,31 @@
+// Where the light comes from. No OpenGL here.
+#pragma once
+
+#include <span>
+
+#include "render/matrix.h"
+
+namespace icloth {
+
+/// A sphere around what is drawn.
+struct Bounds {
+  Vec3d centre;
+  double radius = 1;  ///< [m]
+};
+
+/// Of the box around the points; never smaller than a millimetre.
+Bounds bounds_of(std::span<const Vec3f> points);
+
+/// One sample of the studio: the key light is a disc, the sky a dome. Sample i of n is the same
+/// in every picture; over all n they cover disc, dome and pixel evenly.
+struct LightSample {
+  Vec3d key;                ///< unit vector towards the key light
+  Vec3d dome;               ///< unit vector towards a part of the sky
+  double pixel_x, pixel_y;  ///< offset in the pixel, −0.5 … 0.5
+};
+LightSample light_sample(int i, int n);
+
+/// World to the clip space of a light far away in `direction` that sees the bounds.
+Matrix4 light_matrix(const Bounds& bounds, Vec3d direction);
+
+}  // namespace icloth

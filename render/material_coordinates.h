@@ -1,0 +1,16 @@
+// Where the threads of the fabric run.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace icloth {
+
+/// Material coordinates of the corners of the cloth faces [m] (cloth_faces), from the faces' own
+/// frames (World::face_inverse). Neighbours agree wherever a cloth can be laid out flat; a loop
+/// that cannot (a tube sewn together) breaks along one line of faces.
+std::vector<std::array<Vec2d, 3>> material_coordinates(const World& world);
+
+}  // namespace icloth

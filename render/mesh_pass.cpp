@@ -1,0 +1,103 @@
+#include "render/mesh_pass.h"
+
+#include <glad/gl.h>
+
+#include "render/material_coordinates.h"
+
+namespace icloth {
+
+namespace {
+
+struct Tint {
+  Vec3f front, back;  ///< linear albedo
+};
+
+// Dyed fabrics, each clear against the others; the back of a cloth is paler.
+constexpr Tint kFabrics[] = {
+    {{0.42f, 0.045f, 0.06f}, {0.52f, 0.17f, 0.15f}},  // madder
+    {{0.035f, 0.11f, 0.27f}, {0.14f, 0.22f, 0.36f}},  // indigo
+    {{0.62f, 0.36f, 0.06f}, {0.66f, 0.47f, 0.20f}},   // weld
+    {{0.06f, 0.20f, 0.13f}, {0.16f, 0.30f, 0.23f}},   // fir
+    {{0.26f, 0.08f, 0.24f}, {0.36f, 0.19f, 0.34f}},   // plum
+    {{0.05f, 0.29f, 0.32f}, {0.17f, 0.40f, 0.42f}},   // teal
+    {{0.60f, 0.53f, 0.44f}, {0.64f, 0.59f, 0.53f}},   // linen
+    {{0.55f, 0.22f, 0.13f}, {0.60f, 0.34f, 0.26f}},   // terracotta
+};
+constexpr Vec3f kMannequin{0.56f, 0.52f, 0.47f};
+
+template <class T>
+GLuint constant_buffer(const std::vector<T>& data) {
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  const T one{};  // a buffer cannot be empty
+  const bool empty = data.empty();
+  glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(sizeof(T) * (empty ? 1 : data.size())),
+                       empty ? &one : data.data(), 0);
+  return buffer;
+}
+
+}  // namespace
+
+MeshPass::MeshPass(const World& world, unsigned positions_buffer, unsigned normals_buffer)
+    : world_(world),
+      mesh_("mesh.vert.glsl", "mesh.frag.glsl"),
+      depth_("shadow.vert.glsl", ""),
+      positions_(positions_buffer),
+      normals_(normals_buffer) {
+  upload_constants();
+  glCreateVertexArrays(1, &empty_array_);
+  glCreateVertexArrays(1, &vertex_array_);
+  glVertexArrayVertexBuffer(vertex_array_, 0, positions_, 0, sizeof(Vec3f));
+  glEnableVertexArrayAttrib(vertex_array_, 0);
+  glVertexArrayAttribFormat(vertex_array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayElementBuffer(vertex_array_, faces_);
+}
+
+MeshPass::~MeshPass() {
+  for (GLuint buffer : {faces_, inverses_, threads_}) glDeleteBuffers(1, &buffer);
+  for (GLuint array : {vertex_array_, empty_array_}) glDeleteVertexArrays(1, &array);
+}
+
+void MeshPass::upload_constants() {
+  using Float2 = std::array<float, 2>;
+  using Float4 = std::array<float, 4>;
+  std::vector<Float4> inverses;
+  for (const auto& [a, b, c, d] : world_.face_inverse) {
+    inverses.push_back({static_cast<float>(a), static_cast<float>(b), static_cast<float>(c),
+                        static_cast<float>(d)});
+  }
+  std::vector<Float2> threads;
+  for (const auto& corners : material_coordinates(world_))
+    for (const Vec2d at : corners)
+      threads.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
+  faces_ = constant_buffer(world_.face);
+  inverses_ = constant_buffer(inverses);
+  threads_ = constant_buffer(threads);
+}
+
+void MeshPass::draw() const {
+  mesh_.use();
+  glBindVertexArray(empty_array_);
+  const GLuint buffers[] = {positions_, normals_, faces_, inverses_, threads_};
+  glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, 5, buffers);
+  std::size_t fabric = 0;
+  for (const WorldObject& object : world_.objects) {
+    const Tint tint =
+        object.cloth ? kFabrics[fabric++ % std::size(kFabrics)] : Tint{kMannequin, kMannequin};
+    mesh_.set("is_fabric", object.cloth ? 1 : 0);
+    mesh_.set("front_colour", tint.front);
+    mesh_.set("back_colour", tint.back);
+    glDrawArrays(GL_TRIANGLES, 3 * object.first_face, 3 * object.face_count);
+  }
+}
+
+void MeshPass::draw_depth(const Matrix4& matrix) const {
+  float elements[16];
+  for (std::size_t k = 0; k < 16; ++k) elements[k] = static_cast<float>(matrix[k]);
+  depth_.use();
+  depth_.set_matrix("light_matrix", elements);
+  glBindVertexArray(vertex_array_);
+  glDrawElements(GL_TRIANGLES, 3 * world_.faces, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace icloth

@@ -1,0 +1,33 @@
+// Draws the objects of a world, into the picture and into shadow maps.
+#pragma once
+
+#include "render/matrix.h"
+#include "render/shader_program.h"
+#include "sim/world.h"
+
+namespace icloth {
+
+/// Constant buffers of a world's faces and the programs that draw them. Needs a current context.
+class MeshPass {
+ public:
+  explicit MeshPass(const World& world, unsigned positions_buffer, unsigned normals_buffer);
+  ~MeshPass();
+  MeshPass(const MeshPass&) = delete;
+  MeshPass& operator=(const MeshPass&) = delete;
+
+  /// All objects, lit by the studio's uniform block, into the bound framebuffer.
+  void draw() const;
+  /// Their depth as the light sees it. `matrix`: world to clip space of the light.
+  void draw_depth(const Matrix4& matrix) const;
+
+ private:
+  void upload_constants();
+
+  const World& world_;
+  ShaderProgram mesh_, depth_;
+  unsigned positions_, normals_;
+  unsigned faces_ = 0, inverses_ = 0, threads_ = 0;
+  unsigned vertex_array_ = 0, empty_array_ = 0;
+};
+
+}  // namespace icloth

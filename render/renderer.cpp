@@ -1,0 +1,283 @@
+#include "render/renderer.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/gl_context.h"
+#include "render/gl_targets.h"
+#include "render/lights.h"
+#include "render/mesh_pass.h"
+#include "render/overlay.h"
+#include "render/shader_program.h"
+#include "render/shared_vertices.h"
+#include "sim/error.h"
+#include "sim/parameters.h"
+
+namespace icloth {
+
+namespace {
+
+constexpr std::string_view kViewNames[] = {"shaded", "wireframe", "strain"};
+
+/// What a quality costs.
+struct Settings {
+  int samples;       ///< pictures with lights of their own that are averaged
+  int side;          ///< samples along one side of a pixel in each of them
+  int shadow_size;   ///< texels along one side of the shadow map
+  int taps;          ///< reads of the key light's map a pixel
+  float tap_radius;  ///< [texels]
+};
+
+Settings settings_of(Quality quality) {
+  switch (quality) {
+    case Quality::draft:
+      return {1, 1, 1024, 1, 0};
+    case Quality::interactive:
+      return {1, 2, 2048, 8, 6};
+    case Quality::still:
+      break;
+  }
+  return {64, 1, 1024, 4, 1.5f};
+}
+
+/// The uniform block of lights.glsl, std140.
+struct StudioBlock {
+  float view_projection[16], key_matrix[16], dome_matrix[16];
+  float eye[4], key[4], dome[4], ground[4], ray_centre[4], ray_right[4], ray_up[4], options[4];
+};
+
+void store(float (&out)[16], const Matrix4& m) {
+  std::transform(m.begin(), m.end(), out, [](double v) { return static_cast<float>(v); });
+}
+
+void store(float (&out)[4], Vec3d v, double w = 0) {
+  const double values[] = {v.x, v.y, v.z, w};
+  std::transform(values, values + 4, out, [](double e) { return static_cast<float>(e); });
+}
+
+/// Clip space (−1 … 1) to texture space (0 … 1).
+constexpr Matrix4 kToTexture{0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5, 0.5, 1};
+
+}  // namespace
+
+std::span<const std::string_view> view_mode_names() { return kViewNames; }
+
+ViewMode parse_view_mode(std::string_view name) {
+  for (std::size_t k = 0; k < std::size(kViewNames); ++k)
+    if (kViewNames[k] == name) return static_cast<ViewMode>(k);
+  throw InputError("--view '" + std::string(name) + "', expected shaded, wireframe or strain");
+}
+
+struct Renderer::Parts {
+  explicit Parts(const World& the_world);
+  ~Parts();
+
+  void upload(const Frame& frame, const Camera& camera, int width, int height);
+  void light(const Frame& frame, const Camera& camera, const LightSample& sample);
+  void draw_depth(Target& map, const Matrix4& matrix) const;
+  void draw_sample() const;
+  void draw_overlay() const;
+  void add_sample(int number) const;
+  void finish(int width, int height, GLuint target) const;
+  void cover(const ShaderProgram& program) const;
+
+  const World& world;
+  Settings settings = settings_of(Quality::interactive);
+  Quality quality = Quality::interactive;
+  double ground = 0;      ///< [m]
+  Bounds bounds;          ///< of the present frame
+  int overlay_count = 0;  ///< vertices
+
+  SharedVertices vertices;
+  MeshPass meshes;
+  ShaderProgram backdrop, overlay, add, resolve;
+  Target key_map{Target::Kind::shadow}, dome_map{Target::Kind::shadow};
+  Target sample{Target::Kind::sample}, sum{Target::Kind::sum}, bytes{Target::Kind::bytes};
+  GLuint studio = 0, overlay_buffer = 0, overlay_array = 0, empty_array = 0;
+};
+
+Renderer::Parts::Parts(const World& the_world)
+    : world(the_world),
+      vertices(the_world),
+      meshes(the_world, vertices.positions_buffer(), vertices.normals_buffer()),
+      backdrop("screen.vert.glsl", "backdrop.frag.glsl"),
+      overlay("overlay.vert.glsl", "overlay.frag.glsl"),
+      add("screen.vert.glsl", "add.frag.glsl"),
+      resolve("screen.vert.glsl", "resolve.frag.glsl") {
+  glCreateBuffers(1, &studio);
+  glNamedBufferStorage(studio, sizeof(StudioBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  glCreateBuffers(1, &overlay_buffer);
+  glCreateVertexArrays(1, &empty_array);
+  glCreateVertexArrays(1, &overlay_array);
+  glVertexArrayVertexBuffer(overlay_array, 0, overlay_buffer, 0, sizeof(OverlayVertex));
+  for (GLuint attribute : {0u, 1u}) {
+    glEnableVertexArrayAttrib(overlay_array, attribute);
+    glVertexArrayAttribFormat(overlay_array, attribute, attribute == 0 ? 3 : 4, GL_FLOAT, GL_FALSE,
+                              attribute * static_cast<GLuint>(sizeof(Vec3f)));
+  }
+  if (!world.position.empty()) ground = world.position.front().y;
+  for (const Vec3d p : world.position) ground = std::min(ground, p.y);
+}
+
+Renderer::Parts::~Parts() {
+  for (GLuint buffer : {studio, overlay_buffer}) glDeleteBuffers(1, &buffer);
+  for (GLuint array : {overlay_array, empty_array}) glDeleteVertexArrays(1, &array);
+}
+
+void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width, int height) {
+  vertices.upload(frame.positions);
+  bounds = bounds_of(frame.positions);
+  const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
+  overlay_count = static_cast<int>(list.size());
+  glNamedBufferData(overlay_buffer, static_cast<GLsizeiptr>(list.size() * sizeof(OverlayVertex)),
+                    list.data(), GL_STREAM_DRAW);
+  key_map.resize(settings.shadow_size, settings.shadow_size);
+  sample.resize(settings.side * width, settings.side * height);
+  if (settings.samples == 1) return;
+  dome_map.resize(settings.shadow_size, settings.shadow_size);
+  sum.resize(width, height);
+}
+
+void Renderer::Parts::light(const Frame& frame, const Camera& camera, const LightSample& light) {
+  const bool dome = settings.samples > 1;
+  const double width = sample.width(), height = sample.height(), aspect = width / height;
+  const double texel = 2.04 * bounds.radius / settings.shadow_size;
+  const Matrix4 key_clip = light_matrix(bounds, light.key);
+  const Matrix4 dome_clip = light_matrix(bounds, light.dome);
+  const Matrix4 projection =
+      shifted(camera.projection(aspect), 2 * light.pixel_x / width, 2 * light.pixel_y / height);
+  const double up = std::tan(camera.fov() * std::numbers::pi / 360);
+
+  StudioBlock block{};
+  store(block.view_projection, projection * camera.view());
+  store(block.key_matrix, kToTexture * key_clip);
+  store(block.dome_matrix, kToTexture * dome_clip);
+  store(block.eye, camera.eye());
+  store(block.key, light.key, texel);
+  store(block.dome, light.dome, dome ? texel : 0);
+  store(block.ground, {ground, bounds.centre.x, bounds.centre.z}, bounds.radius);
+  store(block.ray_centre, camera.forward());
+  store(block.ray_right, (up * aspect) * camera.right());
+  store(block.ray_up, up * camera.up());
+  store(block.options,
+        {static_cast<double>(frame.view), frame.strain_range, static_cast<double>(settings.taps)},
+        settings.tap_radius);
+  glNamedBufferSubData(studio, 0, sizeof block, &block);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, studio);
+
+  draw_depth(key_map, key_clip);
+  key_map.bind_texture(0);
+  if (dome) draw_depth(dome_map, dome_clip);
+  (dome ? dome_map : key_map).bind_texture(1);
+}
+
+void Renderer::Parts::draw_depth(Target& map, const Matrix4& matrix) const {
+  map.bind();
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_CLAMP);  // what is nearer to the light than the map's range still shades
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 4);
+  meshes.draw_depth(matrix);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+void Renderer::Parts::draw_sample() const {
+  sample.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glDisable(GL_DEPTH_TEST);
+  cover(backdrop);
+  glEnable(GL_DEPTH_TEST);
+  meshes.draw();
+  if (overlay_count > 0) draw_overlay();
+  glDisable(GL_DEPTH_TEST);
+}
+
+void Renderer::Parts::draw_overlay() const {
+  overlay.use();
+  glBindVertexArray(overlay_array);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDisable(GL_DEPTH_TEST);
+  overlay.set("opacity", 0.25f);  // a hint of what is behind the cloth
+  glDrawArrays(GL_TRIANGLES, 0, overlay_count);
+  glEnable(GL_DEPTH_TEST);
+  overlay.set("opacity", 1.0f);
+  glDrawArrays(GL_TRIANGLES, 0, overlay_count);
+  glDisable(GL_BLEND);
+}
+
+void Renderer::Parts::add_sample(int number) const {
+  sum.bind();
+  sample.bind_texture(2);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, number == 0 ? GL_ZERO : GL_ONE);
+  add.set("weight", 1.0f / static_cast<float>(settings.samples));
+  cover(add);
+  glDisable(GL_BLEND);
+}
+
+void Renderer::Parts::finish(int width, int height, GLuint target) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
+  glViewport(0, 0, width, height);
+  (settings.samples > 1 ? sum : sample).bind_texture(2);
+  resolve.set("side", settings.side);
+  cover(resolve);
+}
+
+void Renderer::Parts::cover(const ShaderProgram& program) const {
+  program.use();
+  glBindVertexArray(empty_array);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Renderer::Renderer(const World& world) : parts_(std::make_unique<Parts>(world)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::set_quality(Quality quality) {
+  parts_->quality = quality;
+  parts_->settings = settings_of(quality);
+}
+
+Quality Renderer::quality() const { return parts_->quality; }
+
+void Renderer::set_ground(double height) { parts_->ground = height; }
+
+std::string Renderer::vertex_way() const { return parts_->vertices.way_text(); }
+
+void Renderer::draw(const Frame& frame, const Camera& camera, int width, int height,
+                    unsigned target_framebuffer) {
+  if (width < 1 || height < 1) return;
+  for (GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB})
+    glDisable(off);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+
+  parts_->upload(frame, camera, width, height);
+  const int samples = parts_->settings.samples;
+  for (int i = 0; i < samples; ++i) {
+    parts_->light(frame, camera, light_sample(i, samples));
+    parts_->draw_sample();
+    if (samples > 1) parts_->add_sample(i);
+  }
+  parts_->finish(width, height, target_framebuffer);
+  check_gl("Renderer::draw");
+}
+
+Image Renderer::picture(const Frame& frame, const Camera& camera, int width, int height) {
+  parts_->bytes.resize(width, height);
+  draw(frame, camera, width, height, parts_->bytes.framebuffer());
+  Image flipped(width, height), image(width, height);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, flipped.pixels.data());
+  for (int y = 0; y < height; ++y)  // OpenGL counts rows from below
+    std::copy_n(flipped.at(0, height - 1 - y), 4 * width, image.at(0, y));
+  return image;
+}
+
+}  // namespace icloth
