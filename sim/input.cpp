@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cinttypes>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "sim/error.h"
+#include "sim/file_io.h"
+#include "sim/json_reader.h"
 
-// A recording is a JSON array of lines: a head, one object a step, and a foot with the hash:
-//   {"icloth_recording": 1, "scene": …, "build": …, "overrides": [...], "steps": [
-//   {"events": [...], "parameters": {...}},
+// A recording is JSON, one line a step:
+//   {"icloth_recording": 1, "scene": …, "build": …, "overrides": […], "steps": [
+//   {"events": […], "parameters": {…}},
 //   …
 //   ], "final_hash": "0123456789abcdef"}
 
@@ -22,55 +20,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kLargestRecording = std::uintmax_t{1} << 30;  // [bytes]
 constexpr int kFirstScriptedHandle = 1000;
+constexpr Index kLargestIndex = 2147483647;
 constexpr std::string_view kKinds[] = {"grab", "move", "release"};
-
-/// Element of a recording with the words that name it in an error.
-struct Element {
-  const Json& json;
-  std::string where;
-
-  [[noreturn]] void refuse(const std::string& expected) const {
-    std::string value = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (value.size() > 60) value = value.substr(0, 60) + "…";
-    throw InputError(where + ": " + value + ", expected " + expected);
-  }
-  Element operator[](const char* key) const {
-    if (!json.is_object() || !json.contains(key)) refuse(std::string("the key '") + key + "'");
-    return {json[key], where + "." + key};
-  }
-  bool has(const char* key) const { return json.is_object() && json.contains(key); }
-  std::string text() const {
-    if (!json.is_string()) refuse("a text");
-    return json.get<std::string>();
-  }
-  double number() const {
-    if (!json.is_number()) refuse("a number");
-    const double value = json.get<double>();
-    if (!std::isfinite(value)) refuse("a finite number");
-    return value;
-  }
-  Index index() const {
-    const double value = number();
-    if (!(value >= 0 && value <= 2147483647.0 && value == std::floor(value)))
-      refuse("a whole number from 0");
-    return static_cast<Index>(value);
-  }
-  Vec3d vector() const {
-    if (!json.is_array() || json.size() != 3) refuse("three numbers");
-    const auto part = [&](std::size_t k) { return Element{json[k], where}.number(); };
-    return {part(0), part(1), part(2)};
-  }
-  void keys(std::initializer_list<std::string_view> known) const {
-    if (!json.is_object()) refuse("an object");
-    for (const auto& item : json.items())
-      if (std::ranges::find(known, item.key()) == known.end())
-        throw InputError(where + ": unknown key '" + item.key() + "', the nearest known one is '" +
-                         std::string(nearest_name(item.key(), {known.begin(), known.size()})) +
-                         "'");
-  }
-};
 
 Json to_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -88,95 +40,69 @@ Json to_json(const InputEvent& event) {
   return json;
 }
 
-InputEvent event_from(const Element& element) {
-  element.keys({"kind", "handle", "face", "barycentric", "target", "radius", "stiffness"});
+InputEvent event_from(const JsonValue& value) {
+  JsonObject object(value);
   InputEvent event;
-  const std::string kind = element["kind"].text();
-  const auto found = std::ranges::find(kKinds, kind);
-  if (found == std::end(kKinds)) element["kind"].refuse("grab, move or release");
+  const JsonValue kind = object.required("kind");
+  const auto found = std::ranges::find(kKinds, kind.text());
+  if (found == std::end(kKinds)) kind.refuse("grab, move or release");
   event.kind = static_cast<InputEvent::Kind>(found - std::begin(kKinds));
-  event.handle = element["handle"].index();
+  event.handle = static_cast<int>(object.required("handle").integer(0, kLargestIndex));
   if (event.kind == InputEvent::Kind::grab) {
-    event.face = element["face"].index();
-    event.barycentric = element["barycentric"].vector();
-    if (element.has("radius")) event.radius = element["radius"].number();
-    if (element.has("stiffness")) event.stiffness = element["stiffness"].number();
-    if (event.radius < 0 || event.stiffness < 0) element.refuse("radius and stiffness from 0");
+    event.face = static_cast<Index>(object.required("face").integer(0, kLargestIndex));
+    event.barycentric = object.required("barycentric").vector();
+    event.radius = object.number("radius", 0, kNotNegative);
+    event.stiffness = object.number("stiffness", 0, kNotNegative);
   }
-  if (event.kind != InputEvent::Kind::release) event.target = element["target"].vector();
+  if (event.kind != InputEvent::Kind::release) event.target = object.required("target").vector();
+  object.finish();
   return event;
 }
 
-Recording::Step step_from(const Element& element) {
-  element.keys({"events", "parameters"});
+Recording::Step step_from(const JsonValue& value) {
+  JsonObject object(value);
   Recording::Step step;
-  if (element.has("events")) {
-    const Element events = element["events"];
-    if (!events.json.is_array()) events.refuse("a list");
-    for (std::size_t i = 0; i < events.json.size(); ++i)
-      step.events.push_back(
-          event_from({events.json[i], events.where + "[" + std::to_string(i) + "]"}));
-  }
-  if (!element.has("parameters")) return step;
-  Parameters scratch;
-  for (const auto& item : element["parameters"].json.items()) {
-    const Element value{item.value(), element.where + ".parameters." + item.key()};
-    const ParameterInfo* info = find_parameter(item.key());
-    if (!info) value.refuse("the name of a parameter");
-    try {
-      set_parameter(scratch, *info, value.number());  // range check
-    } catch (const InputError& error) {
-      throw InputError(element.where + ": " + error.what());
+  if (object.has("events"))
+    for (const JsonValue& event : object["events"].items())
+      step.events.push_back(event_from(event));
+  if (object.has("parameters")) {
+    const JsonValue changes = JsonObject(object["parameters"]).value();
+    for (const auto& [name, number] : changes.json().items()) {
+      const ParameterInfo* info = find_parameter(name);
+      if (!info) changes.refuse("names of parameters");
+      const JsonValue change(number, changes.where() + "." + name);
+      step.parameters.emplace_back(name, change.number({info->minimum, info->maximum}));
     }
-    step.parameters.emplace_back(item.key(), value.number());
   }
+  object.finish();
   return step;
 }
 
-std::uint64_t hash_from(const Element& element) {
-  const std::string text = element.text();
+std::uint64_t hash_from(const JsonValue& value) {
+  const std::string& text = value.text();
   char* end = nullptr;
   const std::uint64_t hash = std::strtoull(text.c_str(), &end, 16);
-  if (text.size() != 16 || end != text.c_str() + text.size()) element.refuse("16 hex digits");
+  if (text.size() != 16 || end != text.c_str() + text.size()) value.refuse("16 hex digits");
   return hash;
-}
-
-Json parse_file(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw InputError(path + ": cannot be read, expected a recording");
-  if (size > kLargestRecording)
-    throw InputError(path + ": " + std::to_string(size) + " bytes, expected at most 2^30");
-  std::ifstream file(path);
-  try {
-    return Json::parse(file);
-  } catch (const Json::exception& failure) {
-    std::string what = failure.what();
-    std::ranges::replace(what, '\n', ' ');
-    throw InputError(path + ": not a recording, expected JSON: " + what);
-  }
 }
 
 }  // namespace
 
 Recording load_recording(const std::string& path) {
-  const Json json = parse_file(path);
-  const Element root{json, path};
-  root.keys({"icloth_recording", "scene", "build", "overrides", "steps", "final_hash"});
-  if (root["icloth_recording"].index() != 1) root["icloth_recording"].refuse("version 1");
+  const nlohmann::json json = read_json(path);
+  JsonObject root(JsonValue(json, path));
+  root.required("icloth_recording").integer(1, 1);
   Recording recording;
-  recording.scene = root["scene"].text();
-  recording.build = root["build"].text();
+  recording.scene = root.required("scene").text();
+  recording.build = root.required("build").text();
   if (recording.build != "cpu32" && recording.build != "cpu64" && recording.build != "cuda32")
     root["build"].refuse("cpu32, cpu64 or cuda32");
-  const Element overrides = root["overrides"], steps = root["steps"];
-  if (!overrides.json.is_array()) overrides.refuse("a list");
-  for (const Json& item : overrides.json)
-    recording.overrides.push_back(Element{item, overrides.where}.text());
-  if (!steps.json.is_array()) steps.refuse("a list");
-  for (std::size_t i = 0; i < steps.json.size(); ++i)
-    recording.steps.push_back(step_from({steps.json[i], path + ": step " + std::to_string(i)}));
-  recording.final_hash = hash_from(root["final_hash"]);
+  for (const JsonValue& item : root.required("overrides").items())
+    recording.overrides.push_back(item.text());
+  for (const JsonValue& step : root.required("steps").items())
+    recording.steps.push_back(step_from(step));
+  recording.final_hash = hash_from(root.required("final_hash"));
+  root.finish();
   return recording;
 }
 
@@ -200,16 +126,7 @@ void save_recording(const Recording& recording, const std::string& path) {
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, recording.final_hash);
   text += "], \"final_hash\": \"" + std::string(hash) + "\"}\n";
-
-  const std::string temporary = path + ".tmp";
-  std::ofstream file(temporary, std::ios::binary);
-  file << text << std::flush;
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::filesystem::remove(temporary, error);
-    throw InputError(path + ": cannot be written");
-  }
+  write_file(path, text);
 }
 
 namespace {
