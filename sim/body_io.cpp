@@ -1,0 +1,148 @@
+// The one file that includes assimp.
+#include "sim/body_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "sim/error.h"
+#include "sim/mesh_io.h"
+
+#if defined(ICLOTH_HAS_ASSIMP)
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#endif
+
+namespace icloth {
+namespace {
+
+#if defined(ICLOTH_HAS_ASSIMP)
+
+using NodePoses = std::map<std::string, aiMatrix4x4>;
+
+void collect_poses(const aiNode& node, const aiMatrix4x4& parent, NodePoses& poses) {
+  const aiMatrix4x4 pose = parent * node.mTransformation;
+  poses.emplace(node.mName.C_Str(), pose);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) collect_poses(*node.mChildren[i], pose, poses);
+}
+
+/// Positions of a mesh under a node; a skin replaces the node's own transform.
+std::vector<Vec3d> posed_vertices(const aiMesh& mesh, const aiMatrix4x4& node_pose,
+                                  const NodePoses& poses) {
+  std::vector<aiVector3D> sum(mesh.mNumVertices);
+  std::vector<float> weight(mesh.mNumVertices, 0.0f);
+  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+    const aiBone& bone = *mesh.mBones[b];
+    const auto found = poses.find(bone.mName.C_Str());
+    if (found == poses.end()) continue;
+    const aiMatrix4x4 pose = found->second * bone.mOffsetMatrix;
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& entry = bone.mWeights[w];
+      if (entry.mVertexId >= mesh.mNumVertices) continue;
+      sum[entry.mVertexId] += entry.mWeight * (pose * mesh.mVertices[entry.mVertexId]);
+      weight[entry.mVertexId] += entry.mWeight;
+    }
+  }
+  std::vector<Vec3d> positions;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D p = weight[v] > 0 ? sum[v] / weight[v] : node_pose * mesh.mVertices[v];
+    positions.push_back({p.x, p.y, p.z});
+  }
+  return positions;
+}
+
+void add_mesh(const aiMesh& mesh, const std::vector<Vec3d>& positions, const std::string& where,
+              TriangleMesh& body) {
+  const auto first = static_cast<Index>(body.positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (!(std::abs(positions[v].x) + std::abs(positions[v].y) + std::abs(positions[v].z) < 1e9))
+      throw InputError(where + ": vertex " + std::to_string(v) +
+                       ": value is not finite, expected three finite coordinates");
+  body.positions.insert(body.positions.end(), positions.begin(), positions.end());
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    Triangle triangle;
+    for (unsigned c = 0; c < 3; ++c) {
+      if (face.mIndices[c] >= mesh.mNumVertices)
+        throw InputError(where + ": face " + std::to_string(f) + ": value " +
+                         std::to_string(face.mIndices[c]) + ", expected the number of a vertex");
+      triangle[c] = first + static_cast<Index>(face.mIndices[c]);
+    }
+    body.faces.push_back(triangle);
+  }
+}
+
+void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
+              const NodePoses& poses, const std::string& path, TriangleMesh& body) {
+  const aiMatrix4x4 pose = parent * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    add_mesh(mesh, posed_vertices(mesh, pose, poses), path + ": mesh " + mesh.mName.C_Str(), body);
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    add_node(scene, *node.mChildren[i], pose, poses, path, body);
+}
+
+/// Vertices are split where texture or normal jump: merged again, so that the surface has no
+/// cracks.
+void merge_coinciding(TriangleMesh& body) {
+  std::map<std::array<double, 3>, Index> first_at;
+  std::vector<Vec3d> positions;
+  std::vector<Index> number;
+  for (Vec3d p : body.positions) {
+    const auto [entry, is_new] =
+        first_at.try_emplace({p.x, p.y, p.z}, static_cast<Index>(positions.size()));
+    if (is_new) positions.push_back(p);
+    number.push_back(entry->second);
+  }
+  for (Triangle& face : body.faces)
+    for (Index& v : face) v = number[static_cast<std::size_t>(v)];
+  std::erase_if(body.faces,
+                [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+  body.positions = std::move(positions);
+}
+
+TriangleMesh read_with_assimp(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": no such file");
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (!scene || !scene->mRootNode) {
+    std::string reason = importer.GetErrorString();
+    std::ranges::replace(reason, '\n', ' ');
+    throw InputError(path + ": cannot be read as a body (" + reason + ")");
+  }
+  NodePoses poses;
+  collect_poses(*scene->mRootNode, aiMatrix4x4(), poses);
+  TriangleMesh body;
+  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), poses, path, body);
+  merge_coinciding(body);
+  if (body.faces.empty()) throw InputError(path + ": 0 triangles, expected at least one");
+  return body;
+}
+
+#else
+
+TriangleMesh read_with_assimp(const std::string& path) {
+  throw InputError(path + ": value '" + std::filesystem::path(path).extension().string() +
+                   "', expected .obj or .ply: this program was built without assimp");
+}
+
+#endif
+
+}  // namespace
+
+TriangleMesh read_body(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".obj" || extension == ".ply") return read_mesh(path).mesh;
+  return read_with_assimp(path);
+}
+
+}  // namespace icloth

@@ -1,0 +1,102 @@
+#include "sim/material_io.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "sim/assets.h"
+#include "sim/error.h"
+#include "sim/json_reader.h"
+
+namespace icloth {
+namespace {
+
+/// Materials that name each other as their base end here.
+constexpr int kMaxBases = 8;
+
+Material load(const std::string& name, const std::string& folder, int depth);
+
+template <std::size_t N>
+void read_row(const JsonValue& value, double unit, std::array<double, N>& row) {
+  const std::vector<double> numbers = value.numbers(N);
+  for (std::size_t i = 0; i < N; ++i) row[i] = unit * numbers[i];
+}
+
+void read_stretching(const JsonValue& value, Material& material) {
+  JsonObject object(value);
+  const JsonValue rest = object.required("rest");
+  read_row(rest, 1, material.stretching[0]);
+  // c11 and c22 of cloth at rest: without them it has no stiffness at all.
+  if (material.stretching[0][0] <= 0 || material.stretching[0][2] <= 0)
+    rest.refuse("c11 and c22 above 0");
+  for (std::size_t row = 1; row < 6; ++row) material.stretching[row] = material.stretching[0];
+  if (object.has("stretched")) {
+    const JsonValue stretched = object["stretched"];
+    const std::vector<JsonValue> rows = stretched.items();
+    if (rows.size() != 5) stretched.refuse("5 rows: along 0, 22.5, 45, 67.5 and 90 degrees");
+    for (std::size_t row = 0; row < 5; ++row) read_row(rows[row], 1, material.stretching[row + 1]);
+  }
+  object.finish();
+}
+
+void read_bending(const JsonValue& value, double unit, Material& material) {
+  const std::vector<JsonValue> rows = value.items();
+  if (rows.size() != 3) value.refuse("3 rows: hinges along 0, 45 and 90 degrees");
+  for (std::size_t row = 0; row < 3; ++row) {
+    read_row(rows[row], unit, material.bending[row]);
+    if (std::ranges::min(material.bending[row]) < 0) rows[row].refuse("numbers, at least 0");
+  }
+}
+
+Material parse(const nlohmann::json& json, const std::string& where, const std::string& folder,
+               int depth) {
+  JsonObject object(JsonValue(json, where));
+  Material material;
+  const bool has_base = object.has("base");
+  if (has_base) {
+    if (depth >= kMaxBases) object["base"].refuse("a material whose bases come to an end");
+    material = load(object["base"].text(), folder, depth + 1);
+  }
+  material.name = object.text("name", material.name);
+  object.text("description", "");
+  object.text("source", "");
+  if (object.has("law")) {
+    const std::string& law = object["law"].text();
+    if (law != "measured" && law != "orthotropic")
+      object["law"].refuse("\"measured\" or \"orthotropic\"");
+    material.law = law == "measured" ? Material::Law::measured : Material::Law::orthotropic;
+  }
+  if (object.has("density") || !has_base)
+    material.density = object.required("density").number({1e-3, 100});
+  material.damping = object.number("damping", material.damping, {0, 10});
+  if (object.has("stretching") || !has_base)
+    read_stretching(object.required("stretching"), material);
+  const double unit = object.number("bending_unit", 1, kPositive);
+  if (object.has("bending") || !has_base) read_bending(object.required("bending"), unit, material);
+  object.finish();
+  return material;
+}
+
+Material load(const std::string& name, const std::string& folder, int depth) {
+  const bool is_file = std::filesystem::path(name).extension() == ".json";
+  const std::string path =
+      is_file ? find_asset(name, folder) : assets_folder() + "/materials/" + name + ".json";
+  std::error_code error;
+  if (!is_file && !std::filesystem::exists(path, error))
+    throw InputError("material '" + name + "' is not known, expected a .json file or one of" +
+                     asset_names("materials"));
+  return parse(read_json(path), path, std::filesystem::path(path).parent_path(), depth);
+}
+
+}  // namespace
+
+Material parse_material(const nlohmann::json& json, const std::string& where,
+                        const std::string& folder) {
+  return parse(json, where, folder, 0);
+}
+
+Material load_material(const std::string& name, const std::string& folder) {
+  return load(name, folder, 0);
+}
+
+}  // namespace icloth

@@ -1,0 +1,34 @@
+// Parsers of the mesh formats, from memory. Used by read_mesh and by tests.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "sim/mesh_io.h"
+
+namespace icloth {
+
+/// `path` is the name for messages. Both throw InputError naming file, line or element, and value.
+MeshFile parse_obj(std::string_view text, const std::string& path);
+MeshFile parse_ply(std::string_view bytes, const std::string& path);
+
+/// Words of a line, separated by blanks.
+class Words {
+ public:
+  explicit Words(std::string_view line) : rest_(line) {}
+  /// Next word, empty at the end.
+  std::string_view next() {
+    const std::size_t begin = rest_.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) return rest_ = {};
+    const std::size_t end = std::min(rest_.find_first_of(" \t\r", begin), rest_.size());
+    const std::string_view word = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    return word;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+}  // namespace icloth

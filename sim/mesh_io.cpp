@@ -1,0 +1,105 @@
+#include "sim/mesh_io.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "sim/error.h"
+#include "sim/file_io.h"
+#include "sim/mesh_formats.h"
+
+namespace icloth {
+namespace {
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// 9 significant digits bring every float back; no locale is involved.
+void append_number(std::string& text, float value) {
+  char digits[32];
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 9).ptr;
+  text.append(digits, end);
+}
+
+void append_index(std::string& text, std::size_t value) {
+  char digits[24];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+std::string describe(const Triangle& face) {
+  return "vertices " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " +
+         std::to_string(face[2]);
+}
+
+/// Twice the area against the square of the longest edge; 0 for a point.
+double flatness(const TriangleMesh& mesh, const Triangle& face) {
+  const auto at = [&](std::size_t c) { return mesh.positions[static_cast<std::size_t>(face[c])]; };
+  const Vec3d a = at(1) - at(0), b = at(2) - at(0), c = at(2) - at(1);
+  const double longest = std::max({norm2(a), norm2(b), norm2(c)});
+  return longest > 0 ? norm(cross(a, b)) / longest : 0;
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension != ".obj" && extension != ".ply")
+    throw InputError(path + ": value '" + extension + "', expected the extension .obj or .ply");
+  const std::string text = read_file(path);
+  MeshFile file = extension == ".obj" ? parse_obj(text, path) : parse_ply(text, path);
+  if (file.mesh.faces.empty()) throw InputError(path + ": 0 triangles, expected at least one");
+  return file;
+}
+
+void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name) {
+  constexpr double kFlat = 1e-9;
+  if (mesh.faces.empty()) throw InputError(name + ": 0 triangles, expected at least one");
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Triangle& face = mesh.faces[f];
+    const std::string element = name + ": triangle " + std::to_string(f) + ": ";
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+      throw InputError(element + describe(face) + ", expected three different vertices");
+    if (flatness(mesh, face) < kFlat)
+      throw InputError(element + describe(face) + " span no area, expected an area above 0");
+    for (Index v : face) used[static_cast<std::size_t>(v)] = true;
+  }
+  const auto unused = std::ranges::find(used, false);
+  if (unused != used.end())
+    throw InputError(name + ": vertex " + std::to_string(unused - used.begin()) +
+                     ": value 0 triangles, expected at least one that uses it");
+}
+
+void write_obj(const std::string& path, std::span<const NamedMesh> objects) {
+  std::string text;
+  std::size_t first = 1;
+  for (const NamedMesh& object : objects) {
+    text += "g " + object.name + "\n";
+    for (Vec3f p : object.positions) {
+      text += "v ";
+      append_number(text, p.x);
+      text += ' ';
+      append_number(text, p.y);
+      text += ' ';
+      append_number(text, p.z);
+      text += '\n';
+    }
+    for (const Triangle& face : object.faces) {
+      text += 'f';
+      for (Index v : face) {
+        text += ' ';
+        append_index(text, first + static_cast<std::size_t>(v));
+      }
+      text += '\n';
+    }
+    first += object.positions.size();
+  }
+  write_file(path, text);
+}
+
+}  // namespace icloth

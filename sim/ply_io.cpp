@@ -1,0 +1,276 @@
+// PLY: ascii and binary little endian. Positions and faces are read, all else is skipped.
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "sim/error.h"
+#include "sim/mesh_formats.h"
+
+namespace icloth {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary files are read as they are");
+
+constexpr double kLargest = 1e9;  ///< of a coordinate [m]
+
+enum class Scalar { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+struct ScalarName {
+  std::string_view name;
+  Scalar type;
+  std::size_t bytes;
+};
+constexpr ScalarName kScalars[] = {
+    {"char", Scalar::i8, 1},    {"uchar", Scalar::u8, 1},   {"short", Scalar::i16, 2},
+    {"ushort", Scalar::u16, 2}, {"int", Scalar::i32, 4},    {"uint", Scalar::u32, 4},
+    {"float", Scalar::f32, 4},  {"double", Scalar::f64, 8}, {"int8", Scalar::i8, 1},
+    {"uint8", Scalar::u8, 1},   {"int16", Scalar::i16, 2},  {"uint16", Scalar::u16, 2},
+    {"int32", Scalar::i32, 4},  {"uint32", Scalar::u32, 4}, {"float32", Scalar::f32, 4},
+    {"float64", Scalar::f64, 8}};
+
+struct Property {
+  std::string name;
+  ScalarName type{};
+  bool list = false;
+  ScalarName count{};  ///< of a list
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+
+  /// Least bytes an item takes, for the check of the announced count against the file.
+  std::size_t least_bytes(bool ascii) const {
+    std::size_t bytes = 0;
+    for (const Property& p : properties)
+      bytes += ascii ? 2 : (p.list ? p.count.bytes : p.type.bytes);
+    return std::max<std::size_t>(bytes, 1);
+  }
+};
+
+template <class T>
+double load(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+class PlyParser {
+ public:
+  PlyParser(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
+
+  MeshFile parse() {
+    parse_header();
+    for (const Element& element : elements_) check_count(element);
+    for (const Element& element : elements_) parse_element(element);
+    const auto count = static_cast<Index>(file_.mesh.faces.size());
+    file_.groups.push_back({std::filesystem::path(path_).stem().string(), 0, count});
+    check_indices();
+    return std::move(file_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& element, std::string_view value,
+                           const std::string& expected) const {
+    throw InputError(path_ + ": " + element + ": value '" + std::string(value.substr(0, 60)) +
+                     "', expected " + expected);
+  }
+
+  std::string_view header_line() {
+    const std::size_t end = rest_.find('\n');
+    if (end == std::string_view::npos) refuse("header", "(end of file)", "end_header");
+    const std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    return line;
+  }
+
+  void parse_header() {
+    if (Words(header_line()).next() != "ply") refuse("header", "", "the first line 'ply'");
+    for (;;) {
+      Words words(header_line());
+      const std::string_view key = words.next();
+      if (key == "end_header") break;
+      if (key == "format") parse_format(words.next());
+      if (key == "element") add_element(words);
+      if (key == "property") add_property(words);
+    }
+    if (!has_format_) refuse("header", "", "a line 'format'");
+  }
+
+  void parse_format(std::string_view format) {
+    if (format != "ascii" && format != "binary_little_endian")
+      refuse("format", format, "ascii or binary_little_endian");
+    ascii_ = format == "ascii";
+    has_format_ = true;
+  }
+
+  void add_element(Words& words) {
+    Element element;
+    element.name = words.next();
+    const std::string_view count = words.next();
+    const auto [end, error] =
+        std::from_chars(count.data(), count.data() + count.size(), element.count);
+    if (error != std::errc{} || end != count.data() + count.size() ||
+        element.count > std::numeric_limits<Index>::max() / 4)
+      refuse("element " + element.name, count, "a count from 0 to 536870911");
+    elements_.push_back(element);
+  }
+
+  ScalarName scalar(std::string_view name) const {
+    for (const ScalarName& s : kScalars)
+      if (s.name == name) return s;
+    refuse("property", name, "a scalar type such as float or int");
+  }
+
+  void add_property(Words& words) {
+    if (elements_.empty()) refuse("property", "", "an element before it");
+    Property property;
+    std::string_view word = words.next();
+    if (word == "list") {
+      property.list = true;
+      property.count = scalar(words.next());
+      word = words.next();
+    }
+    property.type = scalar(word);
+    property.name = words.next();
+    elements_.back().properties.push_back(property);
+  }
+
+  void check_count(const Element& element) const {
+    if (element.count > rest_.size() / element.least_bytes(ascii_))
+      refuse("element " + element.name, std::to_string(element.count),
+             "no more than fit into the " + std::to_string(rest_.size()) +
+                 " bytes that follow the header");
+  }
+
+  double next_number(const ScalarName& type, const std::string& where) {
+    if (ascii_) return next_ascii(where);
+    if (rest_.size() < type.bytes) refuse(where, "(end of file)", "more data");
+    const char* bytes = rest_.data();
+    rest_.remove_prefix(type.bytes);
+    switch (type.type) {
+      case Scalar::i8:
+        return load<std::int8_t>(bytes);
+      case Scalar::u8:
+        return load<std::uint8_t>(bytes);
+      case Scalar::i16:
+        return load<std::int16_t>(bytes);
+      case Scalar::u16:
+        return load<std::uint16_t>(bytes);
+      case Scalar::i32:
+        return load<std::int32_t>(bytes);
+      case Scalar::u32:
+        return load<std::uint32_t>(bytes);
+      case Scalar::f32:
+        return load<float>(bytes);
+      case Scalar::f64:
+        break;
+    }
+    return load<double>(bytes);
+  }
+
+  double next_ascii(const std::string& where) {
+    const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos) refuse(where, "(end of file)", "more data");
+    const std::size_t end = std::min(rest_.find_first_of(" \t\r\n", begin), rest_.size());
+    const std::string_view word = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    double value = 0;
+    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || last != word.data() + word.size()) refuse(where, word, "a number");
+    return value;
+  }
+
+  std::size_t list_length(const Property& property, const std::string& where) {
+    const double count = next_number(property.count, where);
+    // Every entry takes a byte at least, so a list is never longer than the rest of the file.
+    if (!(count >= 0) || count != std::floor(count) || count > static_cast<double>(rest_.size()))
+      refuse(where, std::to_string(count), "a list length within the file");
+    return static_cast<std::size_t>(count);
+  }
+
+  void parse_element(const Element& element) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::string where = element.name + " " + std::to_string(i);
+      if (element.name == "vertex") {
+        parse_vertex(element, where);
+      } else {
+        parse_item(element, where);
+      }
+    }
+  }
+
+  void parse_vertex(const Element& element, const std::string& where) {
+    std::array<double, 3> p;
+    p.fill(std::numeric_limits<double>::quiet_NaN());
+    for (const Property& property : element.properties) {
+      const std::size_t count = property.list ? list_length(property, where) : 1;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double value = next_number(property.type, where);
+        const std::size_t axis = std::string_view("xyz").find(property.name);
+        if (property.name.size() == 1 && axis < 3) p[axis] = value;
+      }
+    }
+    for (double x : p)
+      if (!(std::abs(x) <= kLargest)) refuse(where, std::to_string(x), "three finite coordinates");
+    file_.mesh.positions.push_back({p[0], p[1], p[2]});
+  }
+
+  void parse_item(const Element& element, const std::string& where) {
+    for (const Property& property : element.properties) {
+      if (!property.list) {
+        next_number(property.type, where);
+        continue;
+      }
+      const bool is_face = element.name == "face" &&
+                           (property.name == "vertex_indices" || property.name == "vertex_index");
+      const std::size_t count = list_length(property, where);
+      if (is_face && count < 3) refuse(where, std::to_string(count) + " corners", "at least three");
+      parse_corners(property, count, is_face, where);
+    }
+  }
+
+  void parse_corners(const Property& property, std::size_t count, bool is_face,
+                     const std::string& where) {
+    Triangle fan{};
+    for (std::size_t k = 0; k < count; ++k) {
+      const double value = next_number(property.type, where);
+      if (!is_face) continue;
+      if (!(value >= 0 && value < std::numeric_limits<Index>::max()) || value != std::floor(value))
+        refuse(where, std::to_string(value), "the number of a vertex");
+      fan[std::min<std::size_t>(k, 2)] = static_cast<Index>(value);
+      if (k < 2) continue;
+      file_.mesh.faces.push_back(fan);
+      fan[1] = fan[2];
+    }
+  }
+
+  /// After everything is read: vertices may come after the faces.
+  void check_indices() const {
+    const auto count = static_cast<Index>(file_.mesh.positions.size());
+    for (std::size_t f = 0; f < file_.mesh.faces.size(); ++f)
+      for (Index v : file_.mesh.faces[f])
+        if (v >= count)
+          refuse("triangle " + std::to_string(f), std::to_string(v),
+                 "the number of a vertex below " + std::to_string(count));
+  }
+
+  std::string_view rest_;
+  const std::string& path_;
+  std::vector<Element> elements_;
+  MeshFile file_;
+  bool ascii_ = true, has_format_ = false;
+};
+
+}  // namespace
+
+MeshFile parse_ply(std::string_view bytes, const std::string& path) {
+  return PlyParser(bytes, path).parse();
+}
+
+}  // namespace icloth

@@ -1,0 +1,179 @@
+#include "sim/scene_io.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "sim/assets.h"
+#include "sim/error.h"
+#include "sim/material_io.h"
+#include "sim/mesh_io.h"
+#include "sim/scene_json.h"
+
+namespace icloth {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Overrides {
+  std::vector<std::pair<std::string_view, std::string_view>> parameters;
+  double triangles = 0;  ///< 0: as the scene says
+};
+
+double parse_triangles(std::string_view text) {
+  Index number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || rest != text.data() + text.size() || number < 2 ||
+      number > kMaxTriangles)
+    throw InputError("--set triangles: value '" + std::string(text) +
+                     "', expected a whole number from 2 to " + std::to_string(kMaxTriangles));
+  return number;
+}
+
+Overrides split_overrides(std::span<const std::string> arguments) {
+  Overrides overrides;
+  for (std::string_view argument : arguments) {
+    const std::size_t equals = argument.find('=');
+    if (equals == std::string_view::npos || equals == 0)
+      throw InputError("--set: value '" + std::string(argument) + "', expected KEY=VALUE");
+    const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
+    if (key == "triangles") {
+      overrides.triangles = parse_triangles(value);
+    } else {
+      overrides.parameters.emplace_back(key, value);
+    }
+  }
+  return overrides;
+}
+
+double median_edge(const Scene& scene) {
+  std::vector<double> lengths;
+  for (const Cloth& cloth : scene.cloths)
+    for (const Triangle& face : cloth.mesh.faces)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = [&](std::size_t k) {
+          return cloth.rest[static_cast<std::size_t>(face[k])];
+        };
+        lengths.push_back(norm(at((c + 1) % 3) - at(c)));
+      }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::ranges::nth_element(lengths, middle);
+  return *middle;
+}
+
+/// Neighbours repel each other in the plane when the thickness is large against the edges: above
+/// 0.3 edges for the repulsion, 0.05 for the impact offset. Used where the scene's own numbers
+/// were made for another mesh.
+void fit_thickness(Scene& scene) {
+  const double edge = median_edge(scene);
+  if (!(edge > 0)) return;
+  Parameters& p = scene.parameters;
+  p.thickness =
+      std::max(std::min(p.thickness, 0.3 * edge), find_parameter("proximity.thickness")->minimum);
+  p.offset =
+      std::max(std::min(p.offset, 0.05 * edge), find_parameter("impact_zones.offset")->minimum);
+}
+
+void hang_by_highest(Cloth& cloth) {
+  const std::vector<Vec3d>& x = cloth.mesh.positions;
+  const auto [low, high] = std::ranges::minmax_element(x, {}, &Vec3d::y);
+  const double limit = high->y - 0.01 * (high->y - low->y);
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (x[v].y >= limit) cloth.pins.push_back(static_cast<Index>(v));
+  if (cloth.pins.size() * 4 < x.size()) return;
+  // A sheet that lies flat has no top: two far corners hold it.
+  const auto along = [](Vec3d p) { return p.x + p.z; };
+  const auto [a, b] = std::ranges::minmax_element(x, {}, along);
+  cloth.pins = {static_cast<Index>(a - x.begin()), static_cast<Index>(b - x.begin())};
+}
+
+CameraPose framing_camera(const std::vector<Vec3d>& points) {
+  Vec3d low = points.front(), high = low;
+  for (Vec3d p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  CameraPose camera;
+  const double radius = std::max(0.5 * norm(high - low), 1e-3);
+  camera.target = 0.5 * (low + high);
+  const double distance = 1.15 * radius / std::sin(camera.fov / 2 * 3.14159265358979 / 180);
+  camera.eye = camera.target + distance * normalized(Vec3d{0.35, 0.3, 1});
+  return camera;
+}
+
+Scene scene_of_mesh(const std::string& path) {
+  Scene scene;
+  scene.name = fs::path(path).stem().string();
+  Cloth cloth;
+  cloth.name = scene.name;
+  cloth.mesh = read_mesh(path).mesh;
+  check_cloth_mesh(cloth.mesh, path);
+  cloth.mesh.uv.clear();  // may be texture coordinates of any size
+  cloth.rest = cloth.mesh.positions;
+  cloth.material = load_material("default", "");
+  hang_by_highest(cloth);
+  scene.cloths.push_back(std::move(cloth));
+  fit_thickness(scene);
+  return scene;
+}
+
+bool is_mesh_name(const std::string& argument) {
+  std::string extension = fs::path(argument).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".obj" || extension == ".ply";
+}
+
+std::string scene_path(const std::string& argument) {
+  const bool is_name = argument.find_first_of("./") == std::string::npos;
+  if (!is_name) return argument;
+  std::string path = assets_folder() + "/scenes/" + argument + ".json";
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw InputError("scene '" + argument +
+                     "' is not known, expected a .json, .obj or .ply file or one of" +
+                     asset_names("scenes"));
+  return path;
+}
+
+Scene scene_of_json(const std::string& argument, double triangles) {
+  const std::string path = scene_path(argument);
+  const nlohmann::json json = read_json(path);
+  SceneFolder folder{fs::path(path).parent_path().string(), 1};
+  if (triangles > 0) {
+    const double own = total_grid_triangles(json);
+    if (!(own > 0)) throw InputError(path + ": --set triangles: no cloth of the scene is a grid");
+    folder.triangle_scale = triangles / own;
+  }
+  return parse_scene(json, path, folder);
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> load_scene(const std::string& argument,
+                                        std::span<const std::string> overrides) {
+  const Overrides set = split_overrides(overrides);
+  auto scene = std::make_shared<Scene>();
+  if (is_mesh_name(argument)) {
+    if (set.triangles > 0)
+      throw InputError(argument + ": --set triangles: a mesh file has no grid");
+    *scene = scene_of_mesh(argument);
+  } else {
+    *scene = scene_of_json(argument, set.triangles);
+    if (set.triangles > 0) fit_thickness(*scene);
+  }
+  scene->source = argument;
+  if (scene->cameras.empty()) {
+    std::vector<Vec3d> points;
+    for (const Cloth& cloth : scene->cloths)
+      points.insert(points.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
+    if (!points.empty()) scene->cameras.push_back(framing_camera(points));
+  }
+  for (const auto& [key, value] : set.parameters) set_parameter(scene->parameters, key, value);
+  return scene;
+}
+
+}  // namespace icloth

@@ -1,0 +1,202 @@
+// Top level of a scene file: settings, scripted grabs, cameras.
+#include "sim/scene_json.h"
+
+#include <algorithm>
+#include <set>
+
+#include "sim/error.h"
+
+namespace icloth {
+namespace {
+
+constexpr double kSmoothInterval = 0.02;  ///< of a smooth path's points [s]
+constexpr double kMaxTime = 1e5;          ///< [s]
+const NumberRange kTime{0, kMaxTime};
+
+void set_from_json(Parameters& parameters, const std::string& name, const JsonValue& value) {
+  if (!value.json().is_number() && !value.json().is_boolean())
+    value.refuse("a number, true or false");
+  try {
+    set_parameter(parameters, name, value.json().dump());
+  } catch (const InputError& error) {
+    throw InputError(value.where() + ": " + error.what());
+  }
+}
+
+void set_vector(Parameters& parameters, const std::string& group, const JsonValue& value) {
+  value.vector();  // throws unless it is three numbers
+  const char* const axes[] = {".x", ".y", ".z"};
+  for (std::size_t k = 0; k < 3; ++k)
+    set_from_json(parameters, group + axes[k], {value.json()[k], value.where()});
+}
+
+void parse_wind(const JsonValue& value, Parameters& parameters) {
+  if (value.json().is_array()) return set_vector(parameters, "wind", value);
+  JsonObject wind(value);
+  if (wind.has("velocity")) set_vector(parameters, "wind", wind["velocity"]);
+  for (const char* key : {"air_density", "air_drag"})
+    if (wind.has(key)) set_from_json(parameters, std::string("wind.") + key, wind[key]);
+  wind.finish();
+}
+
+/// Position on the cubic through the path's points (Catmull–Rom with uneven times).
+Vec3d smooth_position(const std::vector<PathPoint>& path, std::size_t i, double time) {
+  const auto tangent = [&](std::size_t k) {
+    const PathPoint &a = path[k == 0 ? 0 : k - 1], &b = path[std::min(k + 1, path.size() - 1)];
+    // At rest at both ends: the hand starts and stops gently.
+    if (k == 0 || k + 1 == path.size()) return Vec3d{};
+    return (1 / (b.time - a.time)) * (b.target - a.target);
+  };
+  const double length = path[i + 1].time - path[i].time;
+  const double s = (time - path[i].time) / length;
+  const double s2 = s * s, s3 = s2 * s;
+  return (2 * s3 - 3 * s2 + 1) * path[i].target + (s3 - 2 * s2 + s) * length * tangent(i) +
+         (3 * s2 - 2 * s3) * path[i + 1].target + (s3 - s2) * length * tangent(i + 1);
+}
+
+std::vector<PathPoint> smoothed(const std::vector<PathPoint>& path) {
+  std::vector<PathPoint> result;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const double length = path[i + 1].time - path[i].time;
+    const auto pieces =
+        std::max<std::size_t>(1, static_cast<std::size_t>(length / kSmoothInterval));
+    for (std::size_t k = 0; k < pieces; ++k) {
+      const double time =
+          path[i].time + length * static_cast<double>(k) / static_cast<double>(pieces);
+      result.push_back({time, smooth_position(path, i, time)});
+    }
+  }
+  result.push_back(path.back());
+  return result;
+}
+
+std::vector<PathPoint> parse_path(const JsonValue& value) {
+  std::vector<PathPoint> path;
+  for (const JsonValue& item : value.items()) {
+    const std::vector<double> numbers = item.numbers(4);
+    if (numbers[0] < 0 || numbers[0] > kMaxTime ||
+        (!path.empty() && numbers[0] <= path.back().time))
+      item.refuse("[time, x, y, z] with a time after the one before");
+    path.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}});
+  }
+  if (path.empty()) value.refuse("at least one [time, x, y, z]");
+  return path;
+}
+
+Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths) {
+  if (value.json().is_number())
+    return static_cast<Index>(value.integer(0, static_cast<std::int64_t>(cloths.size()) - 1));
+  for (std::size_t i = 0; i < cloths.size(); ++i)
+    if (cloths[i].cloth.name == value.text()) return static_cast<Index>(i);
+  value.refuse("the name or number of a cloth of the scene");
+}
+
+/// Objects are told apart by name in panels and exported files.
+template <class Object>
+void check_name(const std::string& where, const Object& object, std::set<std::string>& names) {
+  if (!names.insert(object.name).second)
+    throw InputError(where + ".name: value \"" + object.name + "\", expected a name used once");
+}
+
+void parse_settings(JsonObject& object, Scene& scene) {
+  scene.name = object.text("name", scene.source);
+  object.text("description", "");
+  scene.duration = object.number("duration", scene.duration, {1e-4, kMaxTime});
+  if (object.has("time_step"))
+    set_from_json(scene.parameters, "step.time_step", object["time_step"]);
+  if (object.has("gravity")) set_vector(scene.parameters, "gravity", object["gravity"]);
+  if (object.has("wind")) parse_wind(object["wind"], scene.parameters);
+  if (object.has("parameters")) parse_parameters(object["parameters"], "", scene.parameters);
+}
+
+}  // namespace
+
+void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters) {
+  JsonObject object(value);
+  for (const auto& [key, member] : value.json().items()) {
+    const std::string name = group + key;
+    if (member.is_object()) {
+      parse_parameters(object[key], name + ".", parameters);
+    } else {
+      set_from_json(parameters, name, object[key]);
+    }
+  }
+}
+
+Index parse_vertex(JsonValue value, const LoadedCloth& cloth) {
+  const auto count = static_cast<std::int64_t>(cloth.cloth.mesh.positions.size());
+  if (value.json().is_number()) return static_cast<Index>(value.integer(0, count - 1));
+  const std::string& name = value.text();
+  const std::vector<Index> found =
+      cloth.grid ? grid_vertices(*cloth.grid, name) : std::vector<Index>{};
+  if (found.size() == 1) return found.front();
+  if (!cloth.grid) value.refuse("a vertex number (only grids have named vertices)");
+  const auto names = grid_vertex_names();
+  value.refuse("a vertex number or a name such as '" + std::string(nearest_name(name, names)) +
+               "'");
+}
+
+ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths) {
+  JsonObject object(value);
+  if (cloths.empty()) value.refuse("a scene with a cloth to grab");
+  ScriptedGrab grab;
+  if (object.has("cloth")) grab.cloth = find_cloth(object["cloth"], cloths);
+  grab.vertex =
+      parse_vertex(object.required("vertex"), cloths[static_cast<std::size_t>(grab.cloth)]);
+  grab.path = parse_path(object.required("path"));
+  if (object.boolean("smooth", false)) grab.path = smoothed(grab.path);
+  grab.radius = object.number("radius", 0, {0, 10});
+  grab.stiffness = object.number("stiffness", 0, {0, 1e6});
+  grab.start = object.number("time", grab.path.front().time, kTime);
+  grab.release = object.number("release", grab.path.back().time, kTime);
+  if (grab.release < grab.start) object["release"].refuse("a time after the start of the grab");
+  object.text("comment", "");
+  object.finish();
+  return grab;
+}
+
+CameraPose parse_camera(JsonValue value) {
+  JsonObject object(value);
+  CameraPose camera;
+  camera.name = object.text("name", camera.name);
+  camera.eye = object.required("eye").vector();
+  camera.target = object.required("target").vector();
+  camera.up = object.vector("up", camera.up);
+  camera.fov = object.number("fov", camera.fov, {1, 170});
+  const Vec3d across = cross(camera.target - camera.eye, camera.up);
+  if (!(norm(across) > 0)) value.refuse("eye and target apart, and not along up");
+  object.finish();
+  return camera;
+}
+
+Scene parse_scene(const nlohmann::json& json, const std::string& source,
+                  const SceneFolder& folder) {
+  JsonObject object(JsonValue(json, source));
+  Scene scene;
+  scene.source = source;
+  parse_settings(object, scene);
+
+  std::vector<LoadedCloth> cloths;
+  std::set<std::string> cloth_names, obstacle_names;
+  for (const JsonValue& item : object.required("cloths").items()) {
+    cloths.push_back(parse_cloth(item, folder, cloths.size()));
+    check_name(item.where(), cloths.back().cloth, cloth_names);
+  }
+  if (object.has("obstacles")) {
+    for (const JsonValue& item : object["obstacles"].items()) {
+      scene.obstacles.push_back(parse_obstacle(item, folder, scene.obstacles.size()));
+      check_name(item.where(), scene.obstacles.back(), obstacle_names);
+    }
+  }
+  if (object.has("input"))
+    for (const JsonValue& item : object["input"].items())
+      scene.input.push_back(parse_grab(item, cloths));
+  if (object.has("cameras"))
+    for (const JsonValue& item : object["cameras"].items())
+      scene.cameras.push_back(parse_camera(item));
+  object.finish();
+  for (LoadedCloth& loaded : cloths) scene.cloths.push_back(std::move(loaded.cloth));
+  return scene;
+}
+
+}  // namespace icloth

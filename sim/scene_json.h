@@ -1,0 +1,58 @@
+// The pieces of a scene file, one function each. Included by the scene loader only.
+#pragma once
+
+#include <optional>
+
+#include "sim/json_reader.h"
+#include "sim/scene.h"
+#include "sim/shapes.h"
+
+namespace icloth {
+
+/// Rigid motion and size of an object: x → rotation · (scale ∘ x) + translation.
+struct Placement {
+  Vec3d scale{1, 1, 1};
+  Mat3<double> rotation = Mat3<double>::identity();
+  Vec3d translation;
+
+  Vec3d operator()(Vec3d x) const {
+    return rotation * Vec3d{scale.x * x.x, scale.y * x.y, scale.z * x.z} + translation;
+  }
+};
+
+/// A cloth of the scene and, for a grid, the names of its vertices.
+struct LoadedCloth {
+  Cloth cloth;
+  std::optional<GridMesh> grid;
+};
+
+struct SceneFolder {
+  std::string path;           ///< files are looked for here, then in the assets folder
+  double triangle_scale = 1;  ///< factor on the triangles of every grid
+};
+
+inline constexpr Index kMaxTriangles = 50'000'000;
+
+/// {"translate": [3], "rotate": [3 degrees, about x, then y, then z] or {"axis", "angle"}, "scale"}
+Placement parse_transform(JsonValue value);
+/// Rotation vector [rad] from degrees about x, y, z in turn, or from {"axis": [3], "angle":
+/// degrees}.
+Vec3d parse_rotation(JsonValue value);
+
+/// Sum of the wanted triangles of all grids; ill-formed entries count as none.
+double total_grid_triangles(const nlohmann::json& scene);
+
+LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number);
+Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t number);
+ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths);
+CameraPose parse_camera(JsonValue value);
+/// Dotted names or nested groups.
+void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters);
+
+/// Vertex number of a cloth, or the name of one of its grid's vertices.
+Index parse_vertex(JsonValue value, const LoadedCloth& cloth);
+
+/// Whole scene. `source` is the name for messages.
+Scene parse_scene(const nlohmann::json& json, const std::string& source, const SceneFolder& folder);
+
+}  // namespace icloth
