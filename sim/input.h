@@ -15,19 +15,19 @@ struct InputEvent {
   enum class Kind { grab, move, release };
 
   Kind kind = Kind::grab;
-  int handle = 0;       ///< chosen by the sender, unique while held
-  Index face = 0;       ///< grab: global cloth face hit (cloths' faces in scene order)
+  int handle = 0;              ///< chosen by the sender, unique while held
+  Index face = 0;              ///< grab: global cloth face hit (cloths' faces in scene order)
   Vec3d barycentric{1, 0, 0};  ///< grab: weights of the face's vertices at the hit
-  Vec3d target;         ///< grab, move: where the hit point is pulled to [m]
-  double radius = 0;    ///< grab: patch radius in rest space [m]; 0: the parameter
-  double stiffness = 0; ///< grab: of the whole patch [N/m]; 0: the parameter
+  Vec3d target;                ///< grab, move: where the hit point is pulled to [m]
+  double radius = 0;           ///< grab: patch radius in rest space [m]; 0: the parameter
+  double stiffness = 0;        ///< grab: of the whole patch [N/m]; 0: the parameter
 };
 
 /// A held handle as shown to the user.
 struct HandleState {
   int handle = 0;
-  Vec3d hit;         ///< where the grabbed point is now [m]
-  Vec3d target;      ///< where it is pulled to [m]
+  Vec3d hit;              ///< where the grabbed point is now [m]
+  Vec3d target;           ///< where it is pulled to [m]
   double saturation = 0;  ///< pull / largest allowed pull, 0…1
 };
 
@@ -38,7 +38,7 @@ struct Recording {
     std::vector<std::pair<std::string, double>> parameters;  ///< values changed before the step
   };
 
-  std::string scene;                   ///< built-in name or path
+  std::string scene;  ///< built-in name or path
   std::string build = "cpu32";
   std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
   std::vector<Step> steps;

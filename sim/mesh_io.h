@@ -32,7 +32,7 @@ void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
 std::vector<std::vector<Vec3f>> read_pc2(const std::string& path, Index vertices);
 
 struct NamedMesh {
-  std::string name;                ///< "cloth:NAME" or "obstacle:NAME"
+  std::string name;  ///< "cloth:NAME" or "obstacle:NAME"
   std::span<const Vec3f> positions;
   std::span<const Triangle> faces;  ///< indices into positions
 };

@@ -112,6 +112,12 @@ constexpr ParameterInfo kTable[] = {
     {"grab.max_speed", "fastest hand", "m/s", &P::grab_max_speed, 0.1, 20, true,
      "cloth lags behind a fast cursor, calmer", "cloth keeps up, larger impacts in a step",
      "own choice"},
+    {"grab.max_force", "strongest hand", "N", &P::grab_max_force, 1e-2, 1e3, true,
+     "a stuck cloth is let go of sooner", "pulls heavier cloth, stretches the grabbed patch",
+     "own choice: ten times the weight of a scarf"},
+    {"grab.max_force", "strongest pull", "N", &P::grab_max_force, 0.1, 1000, true,
+     "a hand slips behind heavy or caught cloth", "a hand tears cloth along, larger impacts",
+     "own choice: a kilogram"},
 };
 
 /// Short names of the paper's symbols, for the command line.

@@ -48,6 +48,7 @@ struct Parameters {
   double grab_stiffness = 400.0;
   double grab_radius = 0.02;
   double grab_max_speed = 3.0;
+  double grab_max_force = 10.0;
 };
 
 struct ParameterInfo {

@@ -15,7 +15,7 @@ namespace icloth {
 
 /// Pair of elements that still collides. Vertices are global (cloths first, then obstacles).
 struct OffendingPair {
-  bool edge_edge = false;        ///< false: vertices[0] against the face of the other three
+  bool edge_edge = false;           ///< false: vertices[0] against the face of the other three
   std::array<Index, 4> vertices{};  ///< vf: vertex, face; ee: a0 a1 b0 b1
 };
 
@@ -45,8 +45,8 @@ struct StepReport {
 
 /// One column of the statistics table.
 struct ReportColumn {
-  using Member = std::variant<double StepReport::*, std::int64_t StepReport::*,
-                              std::uint64_t StepReport::*>;
+  using Member =
+      std::variant<double StepReport::*, std::int64_t StepReport::*, std::uint64_t StepReport::*>;
   std::string_view name;
   Member member;
 };

@@ -12,25 +12,25 @@ namespace icloth {
 
 struct Cloth {
   std::string name;
-  TriangleMesh mesh;         ///< start state
-  std::vector<Vec3d> rest;   ///< rest positions [m] (V), the start state's where none were given
+  TriangleMesh mesh;        ///< start state
+  std::vector<Vec3d> rest;  ///< rest positions [m] (V), the start state's where none were given
   Material material;
-  std::vector<Index> pins;   ///< vertices held where they start
+  std::vector<Index> pins;  ///< vertices held where they start
 };
 
 /// Rigid pose at a time; between keyframes translation and rotation vector are interpolated.
 struct Keyframe {
-  double time = 0;       ///< [s]
-  Vec3d translation;     ///< [m]
-  Vec3d rotation;        ///< axis × angle [rad], about the obstacle's own origin
+  double time = 0;    ///< [s]
+  Vec3d translation;  ///< [m]
+  Vec3d rotation;     ///< axis × angle [rad], about the obstacle's own origin
 };
 
 struct Obstacle {
   std::string name;
-  TriangleMesh mesh;                      ///< pose at rest
-  std::vector<Keyframe> motion;           ///< sorted by time; empty: static
-  std::vector<std::vector<Vec3f>> frames; ///< point cache, (frames)(V) [m]; empty: none
-  double frame_rate = 25;                 ///< of the point cache [1/s]
+  TriangleMesh mesh;                       ///< pose at rest
+  std::vector<Keyframe> motion;            ///< sorted by time; empty: static
+  std::vector<std::vector<Vec3f>> frames;  ///< point cache, (frames)(V) [m]; empty: none
+  double frame_rate = 25;                  ///< of the point cache [1/s]
 
   bool moves() const { return motion.size() > 1 || frames.size() > 1; }
   /// Vertex positions at a time [s]; written to out (V).
@@ -46,8 +46,8 @@ struct PathPoint {
 struct ScriptedGrab {
   Index cloth = 0;
   Index vertex = 0;
-  double radius = 0;     ///< [m]; 0: the parameter grab.radius
-  double stiffness = 0;  ///< [N/m]; 0: the parameter grab.stiffness
+  double radius = 0;              ///< [m]; 0: the parameter grab.radius
+  double stiffness = 0;           ///< [N/m]; 0: the parameter grab.stiffness
   double start = 0, release = 0;  ///< [s]
   std::vector<PathPoint> path;    ///< absolute targets, linear in between, sorted by time
 };

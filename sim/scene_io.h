@@ -15,7 +15,8 @@ namespace icloth {
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides);
 
-/// Folder with scenes/ materials/ bodies/ … : $ICLOTH_ASSETS, beside the program, or the source tree.
+/// Folder with scenes/ materials/ bodies/ … : $ICLOTH_ASSETS, beside the program, or the source
+/// tree.
 std::string assets_folder();
 
 }  // namespace icloth

@@ -1,0 +1,72 @@
+// Bending of one hinge: an interior edge with its two faces.
+//
+//        2            θ > 0 when the faces fold towards the side of their normals' … see below;
+//       / \           vertices: edge (0,1), 2 opposite in face (0,1,2), 3 opposite in face (0,3,1).
+//      0───1          E = ¼ c_b (θ − θ_rest)², c_b = k_e l² / (2 (A₀ + A₁)) with rest l and A
+//       \ /           (law of ARCSim: Narain, Samii, O'Brien 2012; Wang et al. 2011 for the data).
+//        3
+#pragma once
+
+#include "kernels/membrane.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Rest data of a hinge, see sim/world.h.
+struct HingeRest {
+  Int4 v;
+  Index fabric0, fabric1;  ///< materials of the two faces
+  Real angle, length, area, direction, weight;
+};
+
+struct HingeAngle {
+  Real theta;         ///< signed dihedral angle [rad]
+  Vec3r gradient[4];  ///< ∂θ/∂x_a [1/m]
+};
+
+/// θ = atan2(ê·(n₀×n₁), n₀·n₁) and its gradient. Heights are kept above 10⁻³ of the edge so that
+/// slivers stay finite.
+ICLOTH_HD inline HingeAngle hinge_angle(const Vec3r x[4]) {
+  const Vec3r edge = x[1] - x[0];
+  const Real length = std::fmax(norm(edge), Real(1e-12));
+  const Vec3r e = (Real(1) / length) * edge;
+  const Vec3r d2 = x[2] - x[0], d3 = x[3] - x[0];
+  const Vec3r n0 = normalized(cross(edge, d2)), n1 = normalized(cross(d3, edge));
+  const Real t0 = dot(d2, e) / length, t1 = dot(d3, e) / length;
+  const Real smallest = Real(1e-3) * length;
+  const Real h0 = std::fmax(norm(d2 - (t0 * length) * e), smallest);
+  const Real h1 = std::fmax(norm(d3 - (t1 * length) * e), smallest);
+  HingeAngle out;
+  out.theta = std::atan2(dot(e, cross(n0, n1)), dot(n0, n1));
+  out.gradient[2] = (Real(-1) / h0) * n0;
+  out.gradient[3] = (Real(-1) / h1) * n1;
+  out.gradient[0] = -(1 - t0) * out.gradient[2] - (1 - t1) * out.gradient[3];
+  out.gradient[1] = -t0 * out.gradient[2] - t1 * out.gradient[3];
+  return out;
+}
+
+/// Measured bending stiffness k_e [N·m]: linear between the curvature samples and the directions.
+ICLOTH_HD inline Real bending_stiffness(const Fabric& fabric, const HingeRest& hinge, Real theta) {
+  // The change of curvature, without its sign: valley and mountain folds are equally stiff.
+  const Real curvature = std::fabs(theta - hinge.angle) * hinge.length / hinge.area;
+  const Real value = fabric.measured ? std::fmin(Real(0.1) * curvature, Real(4)) : Real(0);
+  const int column = value >= 3 ? 3 : static_cast<int>(value);
+  const Real along = value - static_cast<Real>(column);
+  const Real angle = hinge.direction * Real(4 / 3.14159265358979323846);
+  const int row = angle >= 1 ? 1 : 0;
+  const Real turn = std::fmin(std::fmax(angle - static_cast<Real>(row), Real(0)), Real(1));
+  Real k[2];
+  for (int r = 0; r < 2; ++r)
+    k[r] =
+        (1 - along) * fabric.bending[row + r][column] + along * fabric.bending[row + r][column + 1];
+  return std::fmax((1 - turn) * k[0] + turn * k[1], Real(0));
+}
+
+/// ½ c_b [N·m], the second derivative of the energy in θ; the softer side decides.
+ICLOTH_HD inline Real hinge_stiffness(const Fabric& side0, const Fabric& side1,
+                                      const HingeRest& hinge, Real theta) {
+  const Real k =
+      std::fmin(bending_stiffness(side0, hinge, theta), bending_stiffness(side1, hinge, theta));
+  return Real(0.25) * hinge.weight * k * hinge.length * hinge.length / hinge.area;
+}
+
+}  // namespace icloth::ICLOTH_BUILD

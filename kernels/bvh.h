@@ -1,0 +1,133 @@
+// Bounding volume tree with eight children a node, implicit over the elements in Morton order:
+// node i of a level holds the boxes of nodes 8i … 8i+7 of the level below, and a refit is one
+// parallel pass a level. No pointers, no atomics, the same on every device.
+#pragma once
+
+#include <cfloat>
+
+#include "kernels/stencil.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+inline constexpr int kTreeWidth = 8;
+inline constexpr int kTreeLevels = 11;  ///< 8¹¹ > 2³¹ elements
+
+/// Box in single precision, rounded outward where it is made.
+struct Box {
+  float lo[3] = {FLT_MAX, FLT_MAX, FLT_MAX};
+  float hi[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+};
+
+ICLOTH_HD inline void include(Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k) {
+    a.lo[k] = b.lo[k] < a.lo[k] ? b.lo[k] : a.lo[k];
+    a.hi[k] = b.hi[k] > a.hi[k] ? b.hi[k] : a.hi[k];
+  }
+}
+
+/// Written so that a NaN bound overlaps.
+ICLOTH_HD inline bool overlap(const Box& a, const Box& b) {
+  bool apart = false;
+  for (int k = 0; k < 3; ++k) apart = apart || a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k];
+  return !apart;
+}
+
+ICLOTH_HD inline bool inside(Vec3r x, const Box& box) {
+  return static_cast<float>(x.x) >= box.lo[0] && static_cast<float>(x.x) <= box.hi[0] &&
+         static_cast<float>(x.y) >= box.lo[1] && static_cast<float>(x.y) <= box.hi[1] &&
+         static_cast<float>(x.z) >= box.lo[2] && static_cast<float>(x.z) <= box.hi[2];
+}
+
+/// Smallest box around two points, padded; rounding goes outward.
+ICLOTH_HD inline Box swept_box(Vec3r a, Vec3r b, Real pad) {
+  const Real p[3] = {a.x, a.y, a.z}, q[3] = {b.x, b.y, b.z};
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    const Real low = (p[k] < q[k] ? p[k] : q[k]) - pad, high = (p[k] > q[k] ? p[k] : q[k]) + pad;
+    // Three float roundings at most: 4 ulp outward cover them.
+    box.lo[k] = static_cast<float>(low) - 2.4e-7f * std::fabs(static_cast<float>(low)) - FLT_MIN;
+    box.hi[k] = static_cast<float>(high) + 2.4e-7f * std::fabs(static_cast<float>(high)) + FLT_MIN;
+  }
+  return box;
+}
+
+struct TreeNode {
+  float lo[3][kTreeWidth], hi[3][kTreeWidth];
+};
+
+ICLOTH_HD inline Box child_box(const TreeNode& node, int child) {
+  Box box;
+  for (int k = 0; k < 3; ++k) box.lo[k] = node.lo[k][child], box.hi[k] = node.hi[k][child];
+  return box;
+}
+
+ICLOTH_HD inline void set_child(TreeNode& node, int child, const Box& box) {
+  for (int k = 0; k < 3; ++k) node.lo[k][child] = box.lo[k], node.hi[k][child] = box.hi[k];
+}
+
+struct TreeView {
+  View<const TreeNode> nodes;  ///< all levels, the lowest first
+  View<const Index> items;     ///< element of each leaf, in Morton order
+  Index level_first[kTreeLevels];
+  int levels = 0;  ///< 0: empty tree
+};
+
+/// Bit c is set where child c overlaps the box.
+ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& box) {
+  int hit[kTreeWidth];
+  for (int c = 0; c < kTreeWidth; ++c) {
+    const bool apart = (node.lo[0][c] > box.hi[0]) | (box.lo[0] > node.hi[0][c]) |
+                       (node.lo[1][c] > box.hi[1]) | (box.lo[1] > node.hi[1][c]) |
+                       (node.lo[2][c] > box.hi[2]) | (box.lo[2] > node.hi[2][c]);
+    hit[c] = apart ? 0 : 1;
+  }
+  unsigned mask = 0;
+  for (int c = 0; c < kTreeWidth; ++c) mask |= static_cast<unsigned>(hit[c]) << c;
+  return mask;
+}
+
+/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps.
+template <class Found>
+ICLOTH_HD void query_tree(const TreeView& tree, const Box& box, Index after_leaf,
+                          const Found& found) {
+  if (tree.levels == 0) return;
+  struct Entry {
+    int level;
+    Index node;
+  } stack[kTreeLevels * (kTreeWidth - 1) + 1];
+  int depth = 0;
+  stack[depth++] = {tree.levels - 1, 0};
+  while (depth > 0) {
+    const Entry top = stack[--depth];
+    const TreeNode& node = tree.nodes[tree.level_first[top.level] + top.node];
+    unsigned mask = overlapping_children(node, box);
+    for (int c = 0; mask != 0; ++c, mask >>= 1) {
+      if ((mask & 1u) == 0) continue;
+      const Index child = top.node * kTreeWidth + c;
+      if (top.level == 0) {
+        if (child > after_leaf) found(child, tree.items[child]);
+      } else {
+        const Index last_leaf = ((child + 1) << (3 * top.level)) - 1;
+        if (last_leaf > after_leaf) stack[depth++] = {top.level - 1, child};
+      }
+    }
+  }
+}
+
+/// 30-bit Morton code of a point in the unit cube.
+ICLOTH_HD inline std::uint64_t morton_code(float x, float y, float z) {
+  std::uint64_t code = 0;
+  const float p[3] = {x, y, z};
+  for (int k = 0; k < 3; ++k) {
+    const float scaled = p[k] * 1024.0f;
+    std::uint64_t v = scaled >= 1023.0f ? 1023u : (scaled > 0 ? static_cast<unsigned>(scaled) : 0u);
+    v = (v | (v << 16)) & 0x030000FFu;
+    v = (v | (v << 8)) & 0x0300F00Fu;
+    v = (v | (v << 4)) & 0x030C30C3u;
+    v = (v | (v << 2)) & 0x09249249u;
+    code |= v << (2 - k);
+  }
+  return code;
+}
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,90 @@
+#include "sim/ccd.h"
+
+#include "kernels/elementary_ccd.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+struct ImpactTest {
+  View<const Vec3r> x0, x1;
+  View<const Real> inverse_mass;
+  View<const std::uint8_t> dirty;
+  bool incremental;
+  double separation;  ///< of the degenerate fallback [m]
+
+  ICLOTH_HD bool skip(const Index v[4]) const {
+    bool movable = false, changed = false;
+    for (int a = 0; a < 4; ++a) {
+      movable = movable || inverse_mass[v[a]] > 0;
+      changed = changed || (incremental && v[a] < dirty.size() && dirty[v[a]] != 0);
+    }
+    return !movable || (incremental && !changed);
+  }
+
+  template <class Emit>
+  ICLOTH_HD void test(bool edge_edge, Pair pair, const Index v[4], Emit& emit) const {
+    if (skip(v)) return;
+    CcdQuery<Real> q;
+    for (int a = 0; a < 4; ++a) q.p0[a] = x0[v[a]], q.p1[a] = x1[v[a]];
+    CcdHit hit;
+    if (!(edge_edge ? ccd_ee(q, separation, hit) : ccd_vf(q, separation, hit))) return;
+    Impact impact;
+    impact.key = pair_key(edge_edge, pair);
+    for (int a = 0; a < 4; ++a) {
+      impact.s.v[a] = v[a];
+      impact.s.w[a] = static_cast<Real>(hit.w[a]);
+    }
+    impact.normal = convert<Real>(hit.normal);
+    impact.toi = static_cast<Real>(hit.toi);
+    emit(impact);
+  }
+};
+
+struct TestVertexFace {
+  ImpactTest base;
+  View<const Pair> candidates;
+  View<const Int3> face;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Pair pair = candidates[i];
+    const Int3 f = face[pair.b];
+    const Index v[4] = {pair.a, f.v[0], f.v[1], f.v[2]};
+    base.test(false, pair, v, emit);
+  }
+};
+
+struct TestEdgeEdge {
+  ImpactTest base;
+  View<const Pair> candidates;
+  View<const Int2> edge;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Pair pair = candidates[i];
+    const Int2 p = edge[pair.a], q = edge[pair.b];
+    const Index v[4] = {p.v[0], p.v[1], q.v[0], q.v[1]};
+    base.test(true, pair, v, emit);
+  }
+};
+
+}  // namespace
+
+void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
+               bool incremental) {
+  const Topology& mesh = step.mesh;
+  const State& s = step.state;
+  const ImpactTest base{s.x0.view(), s.x1.view(), s.inverse_mass.view(),
+                        dirty,       incremental, 0.25 * static_cast<double>(step.offset())};
+  impacts_.resize(0);
+  const Array<Pair>& vf = broad_phase.vertex_faces();
+  collect("ccd.vertex_face", vf.size(), TestVertexFace{base, vf.view(), mesh.face.view()}, found_);
+  append_sorted_("ccd.sort", found_, impacts_);
+  const Array<Pair>& ee = broad_phase.edge_edges();
+  collect("ccd.edge_edge", ee.size(), TestEdgeEdge{base, ee.view(), mesh.edge.view()}, found_);
+  append_sorted_("ccd.sort", found_, impacts_);
+  step.report.elementary_tests += vf.size() + ee.size();
+}
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,35 @@
+// Stage 3: all VF and EE pairs whose linear trajectories x0 → x1 meet (paper Section 3).
+//
+// The first round tests every candidate; later rounds only pairs with a dirty vertex: one whose
+// end position has changed since the last round, or that belonged to a colliding pair (the paper's
+// T_d, corrected: with the vertices of colliding pairs alone, moved neighbours would be missed).
+#pragma once
+
+#include "sim/broad_phase.h"
+#include "sim/constraints.h"
+#include "sim/state.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// A pair that collides within the step.
+struct Impact {
+  std::uint64_t key;
+  Stencil s;     ///< weights at the time of impact
+  Vec3r normal;  ///< unit, at the time of impact, towards the side of the start
+  Real toi;      ///< fraction of the step, not later than the true one
+};
+
+class Ccd {
+ public:
+  /// Finds the impacts, sorted by key. `dirty` (cloth_vertices) is only read when `incremental`.
+  void find(StepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
+            bool incremental);
+
+  const Array<Impact>& impacts() const { return impacts_; }
+
+ private:
+  Array<Impact> impacts_, found_;
+  SortedAppend append_sorted_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,57 @@
+#include "sim/constraints.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+struct CornerKeys {
+  View<const Int4> slots;
+  View<std::uint64_t> keys;
+  View<Index> values;
+  Index vertices;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Index v = slots[i / 4].v[i % 4];
+    const bool left_out = v == kNone || v >= vertices;
+    keys[i] = static_cast<std::uint64_t>(left_out ? vertices : v);
+    values[i] = i;
+  }
+};
+
+/// First entry of vertex i in the sorted keys, by bisection.
+struct FirstEntries {
+  View<const std::uint64_t> keys;
+  View<Index> first;
+
+  ICLOTH_HD void operator()(Index i) const {
+    Index low = 0, high = keys.size();
+    while (low < high) {
+      const Index middle = low + (high - low) / 2;
+      if (keys[middle] < static_cast<std::uint64_t>(i))
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    first[i] = low;
+  }
+};
+
+int bits_for(Index largest) {
+  int bits = 1;
+  while (bits < 31 && (largest >> bits) != 0) ++bits;
+  return bits;
+}
+
+}  // namespace
+
+void Incidence::build(View<const Int4> slots, Index vertices) {
+  const Index corners = 4 * slots.size();
+  keys_.resize(corners);
+  values_.resize(corners);
+  first_.resize(vertices + 1);
+  for_each("constraints.corners", corners,
+           CornerKeys{slots, keys_.view(), values_.view(), vertices});
+  sort_by_key("constraints.sort", keys_.view(), values_.view(), bits_for(vertices));
+  for_each("constraints.first", vertices + 1, FirstEntries{keys_.view(), first_.view()});
+}
+
+}  // namespace icloth::ICLOTH_BUILD

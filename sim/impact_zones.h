@@ -1,0 +1,63 @@
+// Stage 4: groups the impacts into zones and moves their vertices until the constraints hold
+// (paper Section 4). Constraints are kept over the rounds of a step.
+#pragma once
+
+#include "kernels/zone_solve.h"
+#include "sim/ccd.h"
+#include "sim/constraints.h"
+#include "sim/state.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// A constraint of this step: n·g(x1) ≥ δ.
+struct KeptImpact {
+  std::uint64_t key;
+  Stencil s;
+  Vec3r normal;
+  Real multiplier;  ///< λ of the last solve
+  Index idle;       ///< rounds in a row in which it did nothing
+  Index fresh;      ///< 1: collided in this round
+};
+
+class ImpactZones {
+ public:
+  /// Forgets the constraints of the last step.
+  void begin_step() { kept_.resize(0); }
+
+  /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
+  void solve(StepContext& step, const Array<Impact>& impacts);
+
+  /// 1 for vertices that moved in the last solve or collided before it (cloth_vertices).
+  View<const std::uint8_t> dirty() const { return dirty_.view(); }
+
+ private:
+  void merge(const Array<Impact>& impacts);
+  void label_zones(const StepContext& step);
+  void order_by_zone(const StepContext& step);
+
+  Array<KeptImpact> kept_;  ///< sorted by key, merge
+  Array<KeptImpact> unsorted_, sorted_;
+  SortedAppend append_sorted_;
+  Array<Index> picked_;
+  Array<std::uint64_t> keys_;
+
+  Incidence incidence_;              ///< constraints of a vertex, then of a slot
+  Array<Int4> slots_;                ///< corners of kept_ (constraints), label_zones
+  Array<Index> unsorted_active_;     ///< free vertices with a constraint, label_zones
+  Array<Index> slot_of_;             ///< place there of a vertex (cloth_vertices), label_zones
+  Array<Index> label_, next_label_;  ///< smallest slot of the zone (active), label_zones
+  Array<Index> constraint_label_;    ///< likewise (constraints), label_zones
+
+  Array<Index> vertex_order_, new_slot_;          ///< slots by zone and back, order_by_zone
+  Array<Index> kept_of_;                          ///< kept_ index of each constraint by zone
+  Array<Index> vertex_first_, constraint_first_;  ///< ranges (zones + 1), order_by_zone
+  Array<Index> active_;                           ///< vertices by zone (active), order_by_zone
+  Array<ZoneConstraint> constraints_;             ///< by zone, order_by_zone
+  Array<Int4> zone_slots_;
+  Array<Vec3r> target_, x_, before_, direction_;  ///< see ZoneArrays
+  Array<Real> mass_, slope_, multiplier_, shortfall_, trial_;
+  Array<ZoneResult> results_;
+  Array<std::uint8_t> dirty_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,329 @@
+#include "sim/implicit.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// Upper-triangle storage of a face's symmetric 3×3 blocks.
+ICLOTH_HD inline int block_slot(int a, int b) { return a == 0 ? b : (a == 1 ? b + 2 : 5); }
+
+struct Wind {
+  Vec3r velocity;      ///< [m/s]
+  Real density, drag;  ///< [kg/m³], tangential [kg/(m² s)]
+};
+
+struct MembraneTerms {
+  View<const Int3> face;
+  View<const Topology::Inverse> inverse;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const Vec3r> x, v;
+  View<FaceTerm> term;
+  Real dt, damping_extra;
+  Wind wind;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Int3 f = face[i];
+    const Fabric& cloth = fabric[face_fabric[i]];
+    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
+    const Vec3r vs[3] = {v[f.v[0]], v[f.v[1]], v[f.v[2]]};
+    const FaceFrame frame = face_frame(xs, inverse[i].m);
+    const Sym2 g = green_strain(frame);
+    const Stiffness k = stiffness_at(cloth, g);
+    const Sym2 s = stress(k, g), positive = positive_part(s);
+    const Real delay = dt + cloth.damping + damping_extra;
+    FaceTerm t;
+    for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s, area[i], a);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = a; b < 3; ++b) {
+        const Mat3r h = (dt * delay) * membrane_block(frame, k, positive, area[i], a, b);
+        t.block[block_slot(a, b)] = h;
+        t.impulse[a] -= h * vs[b];
+        if (b > a) t.impulse[b] -= transpose(h) * vs[a];
+      }
+    }
+    add_air(t, xs, vs);
+    term[i] = t;
+  }
+
+  /// Wind on one face: pressure ½-free form ρ A |v_n| v_n n plus a tangential drag, a third to
+  /// each vertex; its derivative in the velocity goes to the diagonal.
+  ICLOTH_HD void add_air(FaceTerm& t, const Vec3r xs[3], const Vec3r vs[3]) const {
+    const Vec3r normal2 = cross(xs[1] - xs[0], xs[2] - xs[0]);
+    const Real twice_area = norm(normal2);
+    if (!(twice_area > 0)) return;
+    const Real share = twice_area / Real(6);
+    const Vec3r n = (Real(1) / twice_area) * normal2;
+    const Vec3r relative = wind.velocity - (Real(1) / Real(3)) * (vs[0] + vs[1] + vs[2]);
+    const Real vn = dot(n, relative);
+    const Vec3r force =
+        (share * wind.density * std::fabs(vn) * vn) * n + (share * wind.drag) * (relative - vn * n);
+    const Real stiff = 2 * share * wind.density * std::fabs(vn), drag = share * wind.drag;
+    const Mat3r h = dt * ((stiff - drag) * outer(n, n) + Mat3r::identity(drag));
+    for (int a = 0; a < 3; ++a) {
+      t.impulse[a] += dt * force;
+      t.block[block_slot(a, a)] += h;
+    }
+  }
+};
+
+struct BendingTerms {
+  View<const HingeRest> hinge;
+  View<const Fabric> fabric;
+  View<const Vec3r> x, v;
+  View<HingeTerm> term;
+  Real dt, damping_extra;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const HingeRest& h = hinge[i];
+    Vec3r xs[4];
+    for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
+    const HingeAngle angle = hinge_angle(xs);
+    const Fabric &f0 = fabric[h.fabric0], &f1 = fabric[h.fabric1];
+    const Real k = hinge_stiffness(f0, f1, h, angle.theta);
+    const Real delay = dt + std::fmin(f0.damping, f1.damping) + damping_extra;
+    Real rate = 0;
+    for (int a = 0; a < 4; ++a) rate += dot(angle.gradient[a], v[h.v.v[a]]);
+    HingeTerm t;
+    for (int a = 0; a < 4; ++a) t.gradient[a] = angle.gradient[a];
+    t.k = dt * delay * k;
+    t.s = -dt * k * (angle.theta - h.angle + delay * rate);
+    term[i] = t;
+  }
+};
+
+/// Gathers one row of the matrix and of the right-hand side in a fixed order.
+struct AssembleRow {
+  View<const Index> row_first, column, face_first, face_source, hinge_first, hinge_source;
+  View<const FaceTerm> face_term;
+  View<const HingeTerm> hinge_term;
+  View<const Real> mass, inverse_mass, spring_stiffness;
+  View<const Vec3r> spring_target, x, v;
+  bool springs;
+  Vec3r gravity;
+  Real dt;
+  View<Mat3r> value;
+  View<Vec3r> rhs;
+
+  ICLOTH_HD void operator()(Index i) const {
+    Vec3r impulse = (dt * mass[i]) * gravity;
+    for (Index k = row_first[i]; k < row_first[i + 1]; ++k) {
+      const bool diagonal = column[k] == i;
+      Mat3r sum = diagonal ? Mat3r::identity(mass[i]) : Mat3r{};
+      for (Index e = face_first[k]; e < face_first[k + 1]; ++e) {
+        const Index code = face_source[e];
+        const FaceTerm& t = face_term[code / 9];
+        const int a = (code % 9) / 3, b = code % 3;
+        sum += a <= b ? t.block[block_slot(a, b)] : transpose(t.block[block_slot(b, a)]);
+        if (diagonal) impulse += t.impulse[a];
+      }
+      for (Index e = hinge_first[k]; e < hinge_first[k + 1]; ++e) {
+        const Index code = hinge_source[e];
+        const HingeTerm& t = hinge_term[code / 16];
+        const int a = (code % 16) / 4, b = code % 4;
+        sum += outer(t.k * t.gradient[a], t.gradient[b]);
+        if (diagonal) impulse += t.s * t.gradient[a];
+      }
+      if (diagonal && springs) add_spring(i, sum, impulse);
+      value[k] = sum;
+    }
+    rhs[i] = inverse_mass[i] > 0 ? impulse : Vec3r{};
+  }
+
+  /// Implicit, critically damped spring of a hand.
+  ICLOTH_HD void add_spring(Index i, Mat3r& sum, Vec3r& impulse) const {
+    const Real k = spring_stiffness[i];
+    if (!(k > 0)) return;
+    const Real c = 2 * std::sqrt(k * mass[i]);
+    sum += Mat3r::identity(dt * dt * k + dt * c);
+    impulse += (dt * k) * (spring_target[i] - x[i]) - (dt * dt * k + dt * c) * v[i];
+  }
+};
+
+struct ContactTerms {
+  View<const Contact> contacts;
+  View<const Vec3r> v;
+  View<const Real> inverse_mass;
+  View<ContactTerm> term;
+  Vec3r fall_speed;
+  Real stiffness, thickness, dt;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Contact& c = contacts[i];
+    Vec3r drift{};
+    Real mobility = 0;
+    for (int a = 0; a < 4; ++a) {
+      const Real m = inverse_mass[c.s.v[a]];
+      if (m > 0) drift += c.s.w[a] * fall_speed;
+      mobility += c.s.w[a] * c.s.w[a] * m;
+    }
+    term[i] = contact_term(c, apply(c.s, v), drift, mobility, stiffness, thickness, dt);
+  }
+};
+
+/// Adds the contacts of one vertex to its right-hand side and inverts its diagonal block.
+struct FinishRow {
+  View<const Index> diagonal, contact_first, contact_entries;
+  View<const Mat3r> value;
+  View<const Contact> contacts;
+  View<const ContactTerm> terms;
+  View<const Real> inverse_mass;
+  View<Vec3r> rhs;
+  View<Mat3r> inverse_diagonal;
+
+  ICLOTH_HD void operator()(Index i) const {
+    if (!(inverse_mass[i] > 0)) {
+      inverse_diagonal[i] = Mat3r{};
+      return;
+    }
+    Mat3r block = value[diagonal[i]];
+    for (Index k = contact_first[i]; k < contact_first[i + 1]; ++k) {
+      const Index entry = contact_entries[k];
+      const Real w = contacts[entry / 4].s.w[entry % 4];
+      const ContactTerm& t = terms[entry / 4];
+      rhs[i] += w * t.impulse;
+      const Real s = w * w;
+      block += Mat3r{{s * t.h[0], s * t.h[1], s * t.h[2], s * t.h[1], s * t.h[3], s * t.h[4],
+                      s * t.h[2], s * t.h[4], s * t.h[5]}};
+    }
+    inverse_diagonal[i] = inverse_spd(block);
+  }
+};
+
+struct MoveVertices {
+  View<const Vec3r> x0, v, dv;
+  View<Vec3r> x1, candidate;
+  Real dt;
+  ICLOTH_HD void operator()(Index i) const {
+    x1[i] = x0[i] + dt * (v[i] + dv[i]);
+    candidate[i] = x1[i];
+  }
+};
+
+/// Host-side list of (row, column, source) triples that becomes the pattern.
+struct PatternEntry {
+  Index row, column, source;  ///< source: face code, or hinge code + face codes' end as ~code
+  auto key() const { return std::tuple(row, column, source < 0, source < 0 ? ~source : source); }
+};
+
+std::vector<PatternEntry> pattern_entries(const World& world) {
+  std::vector<PatternEntry> entries;
+  entries.reserve(9 * static_cast<std::size_t>(world.cloth_faces) + 16 * world.hinges.size());
+  for (Index f = 0; f < world.cloth_faces; ++f) {
+    const Triangle& t = world.face[static_cast<std::size_t>(f)];
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        entries.push_back(
+            {t[static_cast<std::size_t>(a)], t[static_cast<std::size_t>(b)], 9 * f + 3 * a + b});
+  }
+  for (std::size_t h = 0; h < world.hinges.size(); ++h)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        entries.push_back({world.hinges[h].vertices[static_cast<std::size_t>(a)],
+                           world.hinges[h].vertices[static_cast<std::size_t>(b)],
+                           ~(16 * static_cast<Index>(h) + 4 * a + b)});
+  std::sort(entries.begin(), entries.end(),
+            [](const auto& p, const auto& q) { return p.key() < q.key(); });
+  return entries;
+}
+
+}  // namespace
+
+void Implicit::set_up(const World& world) {
+  const std::vector<PatternEntry> entries = pattern_entries(world);
+  std::vector<Index> row_first{0}, column, diagonal, face_first{0}, face_source, hinge_first{0},
+      hinge_source;
+  Index row = 0;
+  const auto close_row = [&] { row_first.push_back(static_cast<Index>(column.size())), ++row; };
+  for (std::size_t e = 0; e < entries.size();) {
+    while (row < entries[e].row) close_row();
+    const PatternEntry block = entries[e];
+    if (block.row == block.column) diagonal.push_back(static_cast<Index>(column.size()));
+    column.push_back(block.column);
+    for (; e < entries.size() && entries[e].row == block.row && entries[e].column == block.column;
+         ++e) {
+      if (entries[e].source >= 0)
+        face_source.push_back(entries[e].source);
+      else
+        hinge_source.push_back(~entries[e].source);
+    }
+    face_first.push_back(static_cast<Index>(face_source.size()));
+    hinge_first.push_back(static_cast<Index>(hinge_source.size()));
+  }
+  while (row < world.cloth_vertices) close_row();
+  matrix_.row_first.upload(row_first);
+  matrix_.column.upload(column);
+  matrix_.diagonal.upload(diagonal);
+  matrix_.value.resize(static_cast<Index>(column.size()));
+  face_source_first_.upload(face_first);
+  face_source_.upload(face_source);
+  hinge_source_first_.upload(hinge_first);
+  hinge_source_.upload(hinge_source);
+}
+
+void Implicit::assemble(StepContext& step) {
+  const Topology& mesh = step.mesh;
+  const State& s = step.state;
+  const Parameters& p = step.parameters;
+  const Wind wind{
+      {static_cast<Real>(p.wind_x), static_cast<Real>(p.wind_y), static_cast<Real>(p.wind_z)},
+      static_cast<Real>(p.air_density),
+      static_cast<Real>(p.air_drag)};
+  const Real damping_extra = static_cast<Real>(p.damping_extra);
+  face_terms_.resize(mesh.cloth_faces);
+  hinge_terms_.resize(mesh.hinge_count);
+  rhs_.resize(mesh.cloth_vertices);
+  for_each("implicit.membrane", mesh.cloth_faces,
+           MembraneTerms{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
+                         mesh.face_fabric.view(), mesh.fabric.view(), s.x0.view(), s.v.view(),
+                         face_terms_.view(), step.dt, damping_extra, wind});
+  for_each("implicit.bending", mesh.hinge_count,
+           BendingTerms{mesh.hinge.view(), mesh.fabric.view(), s.x0.view(), s.v.view(),
+                        hinge_terms_.view(), step.dt, damping_extra});
+  for_each(
+      "implicit.assemble", mesh.cloth_vertices,
+      AssembleRow{matrix_.row_first.view(), matrix_.column.view(), face_source_first_.view(),
+                  face_source_.view(), hinge_source_first_.view(), hinge_source_.view(),
+                  face_terms_.view(), hinge_terms_.view(), s.mass.view(), s.inverse_mass.view(),
+                  s.spring_stiffness.view(), s.spring_target.view(), s.x0.view(), s.v.view(),
+                  s.has_springs, step.gravity(), step.dt, matrix_.value.view(), rhs_.view()});
+}
+
+void Implicit::integrate(StepContext& step, const Proximity& proximity) {
+  const Topology& mesh = step.mesh;
+  State& s = step.state;
+  const Array<Contact>& contacts = proximity.contacts();
+  assemble(step);
+  contact_terms_.resize(contacts.size());
+  for_each(
+      "implicit.contact_terms", contacts.size(),
+      ContactTerms{contacts.view(), s.v.view(), s.inverse_mass.view(), contact_terms_.view(),
+                   step.dt * step.gravity(), static_cast<Real>(step.parameters.repulsion_stiffness),
+                   step.thickness(), step.dt});
+  const Incidence& incidence = proximity.incidence();
+  inverse_diagonal_.resize(mesh.cloth_vertices);
+  for_each("implicit.finish_rows", mesh.cloth_vertices,
+           FinishRow{matrix_.diagonal.view(), incidence.first(), incidence.entries(),
+                     matrix_.value.view(), contacts.view(), contact_terms_.view(),
+                     s.inverse_mass.view(), rhs_.view(), inverse_diagonal_.view()});
+  dv_.resize(mesh.cloth_vertices);
+  dv_.fill(Vec3r{});
+  const SystemView system{matrix_.row_first.view(), matrix_.column.view(), matrix_.value.view(),
+                          s.inverse_mass.view(),    contacts.view(),       contact_terms_.view(),
+                          incidence.first(),        incidence.entries()};
+  solution_ = solver_.solve(system, inverse_diagonal_.view(), rhs_.view(), dv_.view(),
+                            step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
+  step.report.cg_iterations += solution_.iterations;
+  step.report.cg_residual = std::max(step.report.cg_residual, solution_.residual);
+  ++step.report.newton_iterations;
+  for_each(
+      "implicit.move", mesh.cloth_vertices,
+      MoveVertices{s.x0.view(), s.v.view(), dv_.view(), s.x1.view(), s.candidate.view(), step.dt});
+}
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,53 @@
+// Stage 2: backward Euler with one linearisation (paper Section 2.4; Baraff and Witkin 1998).
+//
+//   [M + dt(dt+d)K + contacts + springs + air] Δv = dt [f(x) + f_ext − (dt+d) K v]
+//   x1 = x0 + dt (v + Δv)
+//
+// K: positive semi-definite stiffness of membrane and bending at x0, with the measured fabric's
+// coefficients frozen; d: stiffness-proportional damping [s].
+#pragma once
+
+#include "sim/linear_solver.h"
+#include "sim/proximity.h"
+#include "sim/state.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// One face's share of the system.
+struct FaceTerm {
+  Mat3r block[6];    ///< (0,0) (0,1) (0,2) (1,1) (1,2) (2,2) [kg]
+  Vec3r impulse[3];  ///< right-hand side [N·s]
+};
+
+/// One hinge's share: blocks k g_a g_bᵀ, impulses s g_a.
+struct HingeTerm {
+  Vec3r gradient[4];
+  Real k, s;
+};
+
+class Implicit {
+ public:
+  /// Lays out the matrix: one block for each pair of vertices that a face or a hinge couples.
+  void set_up(const World& world);
+
+  /// Writes state.candidate and the cloth part of state.x1.
+  void integrate(StepContext& step, const Proximity& proximity);
+
+  const LinearSolution& solution() const { return solution_; }
+
+ private:
+  void assemble(StepContext& step);
+
+  BlockMatrix matrix_;
+  /// Which element blocks add up to a stored block: 9·face + 3a + b, 16·hinge + 4a + b.
+  Array<Index> face_source_first_, face_source_, hinge_source_first_, hinge_source_;
+  Array<FaceTerm> face_terms_;    ///< (cloth_faces), assemble
+  Array<HingeTerm> hinge_terms_;  ///< (hinges), assemble
+  Array<ContactTerm> contact_terms_;
+  Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
+  Array<Vec3r> rhs_, dv_;
+  LinearSolver solver_;
+  LinearSolution solution_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,138 @@
+#include "sim/linear_solver.h"
+
+#include <cmath>
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// Two dot products at once, in double.
+struct Dots {
+  double rz, rr;
+  ICLOTH_HD friend Dots operator+(Dots a, Dots b) { return {a.rz + b.rz, a.rr + b.rr}; }
+};
+
+ICLOTH_HD double dot_double(Vec3r a, Vec3r b) {
+  return dot(convert<double>(a), convert<double>(b));
+}
+
+struct ContactProducts {
+  SystemView system;
+  View<const Vec3r> p;
+  View<Vec3r> product;
+
+  ICLOTH_HD void operator()(Index c) const {
+    const Stencil& s = system.contacts[c].s;
+    Vec3r sum{};
+    for (int a = 0; a < 4; ++a)
+      if (s.v[a] < p.size()) sum += s.w[a] * p[s.v[a]];
+    product[c] = multiply(system.terms[c], sum);
+  }
+};
+
+/// One row of the product; returns its share of p·Ap.
+struct MultiplyRow {
+  SystemView system;
+  View<const Vec3r> p, contact;
+  View<Vec3r> y;
+
+  ICLOTH_HD double operator()(Index i) const {
+    if (!(system.inverse_mass[i] > 0)) {
+      y[i] = Vec3r{};
+      return 0;
+    }
+    Vec3r sum{};
+    for (Index k = system.row_first[i]; k < system.row_first[i + 1]; ++k)
+      sum += system.value[k] * p[system.column[k]];
+    for (Index k = system.contact_first[i]; k < system.contact_first[i + 1]; ++k) {
+      const Index entry = system.contact_entries[k];
+      sum += system.contacts[entry / 4].s.w[entry % 4] * contact[entry / 4];
+    }
+    y[i] = sum;
+    return dot_double(p[i], sum);
+  }
+};
+
+/// r = b − q, z = M⁻¹ r.
+struct StartResidual {
+  View<const Vec3r> b, q;
+  View<const Mat3r> inverse_diagonal;
+  View<const Real> inverse_mass;
+  View<Vec3r> r, z;
+
+  ICLOTH_HD Dots operator()(Index i) const {
+    r[i] = inverse_mass[i] > 0 ? b[i] - q[i] : Vec3r{};
+    z[i] = inverse_diagonal[i] * r[i];
+    return {dot_double(r[i], z[i]), dot_double(r[i], r[i])};
+  }
+};
+
+/// x += α p, r −= α q, z = M⁻¹ r.
+struct Advance {
+  Real alpha;
+  View<const Vec3r> p, q;
+  View<const Mat3r> inverse_diagonal;
+  View<Vec3r> x, r, z;
+
+  ICLOTH_HD Dots operator()(Index i) const {
+    x[i] += alpha * p[i];
+    r[i] -= alpha * q[i];
+    z[i] = inverse_diagonal[i] * r[i];
+    return {dot_double(r[i], z[i]), dot_double(r[i], r[i])};
+  }
+};
+
+struct NewDirection {
+  Real beta;
+  View<const Vec3r> z;
+  View<Vec3r> p;
+  ICLOTH_HD void operator()(Index i) const { p[i] = z[i] + beta * p[i]; }
+};
+
+}  // namespace
+
+LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
+                                   View<const Vec3r> b, View<Vec3r> x, double tolerance,
+                                   int max_iterations) {
+  const Index n = b.size();
+  for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_}) a->resize(n);
+  contact_.resize(system.contacts.size());
+  const auto multiply = [&](View<const Vec3r> p) {
+    for_each("implicit.contacts", contact_.size(), ContactProducts{system, p, contact_.view()});
+    return reduce("implicit.multiply", n, 0.0, MultiplyRow{system, p, contact_.view(), q_.view()},
+                  Sum{});
+  };
+  const auto residual = [&] {
+    return reduce(
+        "implicit.residual", n, Dots{0, 0},
+        StartResidual{b, q_.view(), inverse_diagonal, system.inverse_mass, r_.view(), z_.view()},
+        Sum{});
+  };
+
+  q_.fill(Vec3r{});
+  Dots dots = residual();  // x = 0
+  const double bb = dots.rr;
+  LinearSolution solution;
+  if (!(bb > 0)) return solution;
+  p_.copy_from(z_);
+  constexpr int kReplaceEvery = 50;  // iterations between true residuals
+  while (solution.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {
+    const double pq = multiply(p_.view());
+    if (!(pq > 0) || !(dots.rz > 0)) break;  // rounding has eaten the curvature, or NaN
+    const double rz = dots.rz;
+    dots = reduce("implicit.advance", n, Dots{0, 0},
+                  Advance{static_cast<Real>(rz / pq), p_.view(), q_.view(), inverse_diagonal, x,
+                          r_.view(), z_.view()},
+                  Sum{});
+    if (++solution.iterations % kReplaceEvery == 0) {
+      multiply(x);
+      dots = residual();
+    }
+    for_each("implicit.direction", n,
+             NewDirection{static_cast<Real>(dots.rz / rz), z_.view(), p_.view()});
+  }
+  multiply(x);
+  solution.residual = std::sqrt(residual().rr / bb);
+  return solution;
+}
+
+}  // namespace icloth::ICLOTH_BUILD

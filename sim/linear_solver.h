@@ -1,0 +1,43 @@
+// Preconditioned conjugate gradients on 3×3 blocks; contacts are applied without assembling them.
+#pragma once
+
+#include "kernels/contact.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Block-sparse matrix with a fixed pattern, rows of ascending columns.
+struct BlockMatrix {
+  Array<Index> row_first;  ///< (rows + 1)
+  Array<Index> column;     ///< (blocks)
+  Array<Index> diagonal;   ///< block number of (i, i) (rows)
+  Array<Mat3r> value;      ///< (blocks)
+};
+
+/// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices.
+struct SystemView {
+  View<const Index> row_first, column;
+  View<const Mat3r> value;
+  View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
+  View<const Contact> contacts;
+  View<const ContactTerm> terms;
+  View<const Index> contact_first, contact_entries;
+};
+
+struct LinearSolution {
+  Index iterations = 0;
+  double residual = 0;  ///< ‖b − Ax‖₂ / ‖b‖₂, computed anew at the end
+};
+
+class LinearSolver {
+ public:
+  /// Solves for x (Δv); `inverse_diagonal`: block-Jacobi preconditioner (rows).
+  LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
+                       View<const Vec3r> b, View<Vec3r> x, double tolerance, int max_iterations);
+
+ private:
+  Array<Vec3r> r_, z_, p_, q_;
+  Array<Vec3r> contact_;  ///< H Σ w p of each contact
+};
+
+}  // namespace icloth::ICLOTH_BUILD

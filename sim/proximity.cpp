@@ -1,0 +1,175 @@
+#include "sim/proximity.h"
+
+#include "kernels/distance.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// What both kinds of pair need to know; the part that does not depend on the kind.
+struct ContactMaker {
+  View<const Vec3r> x, v, rest;
+  View<const Real> inverse_mass;
+  View<const Index> object;
+  Index cloth_vertices;
+  Real thickness, reach, dt;
+  Vec3r fall_speed;  ///< gravity · dt [m/s]
+  Real friction_cloth, friction_obstacle;
+
+  ICLOTH_HD bool boxes_apart(const Index* p, int np, const Index* q, int nq) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      Real low_p = coordinate(p[0], axis), high_p = low_p;
+      Real low_q = coordinate(q[0], axis), high_q = low_q;
+      for (int k = 1; k < np; ++k) {
+        const Real c = coordinate(p[k], axis);
+        low_p = std::fmin(low_p, c), high_p = std::fmax(high_p, c);
+      }
+      for (int k = 1; k < nq; ++k) {
+        const Real c = coordinate(q[k], axis);
+        low_q = std::fmin(low_q, c), high_q = std::fmax(high_q, c);
+      }
+      if (low_p > high_q + reach || low_q > high_p + reach) return true;
+    }
+    return false;
+  }
+
+  ICLOTH_HD Real coordinate(Index i, int axis) const {
+    const Vec3r& p = x[i];
+    return axis == 0 ? p.x : (axis == 1 ? p.y : p.z);
+  }
+
+  /// Fills the contact of a stencil; false when the pair does not repel in this step.
+  ICLOTH_HD bool make(Contact& c) const {
+    const Vec3r g = apply(c.s, x);
+    c.gap = norm(g);
+    if (!(c.gap < reach) || c.gap <= 0) return false;
+    c.normal = (Real(1) / c.gap) * g;
+    Vec3r relative{};
+    Real mobility = 0;
+    for (int a = 0; a < 4; ++a) {
+      const Index i = c.s.v[a];
+      relative += c.s.w[a] * v[i];
+      if (inverse_mass[i] > 0) relative += c.s.w[a] * fall_speed;
+      mobility += c.s.w[a] * c.s.w[a] * inverse_mass[i];
+    }
+    if (!(mobility > 0)) return false;
+    if (!(c.gap + dt * dot(c.normal, relative) < thickness)) return false;
+    // Near in the rest shape too: neighbours in the fabric, not layers that meet.
+    const Index part = object[c.s.v[0]];
+    bool same_cloth = true, touches_obstacle = false;
+    for (int a = 0; a < 4; ++a) {
+      touches_obstacle = touches_obstacle || c.s.v[a] >= cloth_vertices;
+      same_cloth = same_cloth && object[c.s.v[a]] == part;
+    }
+    if (same_cloth && !touches_obstacle && norm2(apply(c.s, rest)) < 4 * thickness * thickness)
+      return false;
+    c.friction = touches_obstacle ? friction_obstacle : friction_cloth;
+    return true;
+  }
+};
+
+struct FindVertexFace {
+  ContactMaker maker;
+  View<const Pair> candidates;
+  View<const Int3> face;
+  View<const Real> vertex_area, face_area;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Pair pair = candidates[i];
+    const Int3 f = face[pair.b];
+    if (maker.boxes_apart(&pair.a, 1, f.v, 3)) return;
+    const auto closest =
+        closest_point_triangle(maker.x[pair.a], maker.x[f.v[0]], maker.x[f.v[1]], maker.x[f.v[2]]);
+    if (!closest.interior) return;
+    Contact c;
+    c.key = pair_key(false, pair);
+    c.s = {{pair.a, f.v[0], f.v[1], f.v[2]},
+           {Real(1), -closest.w[0], -closest.w[1], -closest.w[2]}};
+    c.area = pair.a < maker.cloth_vertices ? vertex_area[pair.a] : face_area[pair.b];
+    if (maker.make(c)) emit(c);
+  }
+};
+
+struct FindEdgeEdge {
+  ContactMaker maker;
+  View<const Pair> candidates;
+  View<const Int2> edge;
+  View<const Real> edge_area;  ///< cloth edges only
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Pair pair = candidates[i];
+    const Int2 p = edge[pair.a], q = edge[pair.b];
+    if (maker.boxes_apart(p.v, 2, q.v, 2)) return;
+    const auto closest =
+        closest_points_segments(maker.x[p.v[0]], maker.x[p.v[1]], maker.x[q.v[0]], maker.x[q.v[1]]);
+    if (!closest.interior) return;
+    Contact c;
+    c.key = pair_key(true, pair);
+    c.s = {{p.v[0], p.v[1], q.v[0], q.v[1]},
+           {-(1 - closest.s), -closest.s, 1 - closest.t, closest.t}};
+    const Real area = edge_area[pair.a];  // the smaller number is a cloth edge
+    c.area = pair.b < edge_area.size() ? std::fmin(area, edge_area[pair.b]) : area;
+    if (maker.make(c)) emit(c);
+  }
+};
+
+struct ContactSlots {
+  View<const Contact> contacts;
+  View<Int4> slots;
+  ICLOTH_HD void operator()(Index i) const {
+    for (int a = 0; a < 4; ++a) slots[i].v[a] = contacts[i].s.v[a];
+  }
+};
+
+struct GapOf {
+  View<const Contact> contacts;
+  ICLOTH_HD Real operator()(Index i) const { return contacts[i].gap; }
+};
+
+}  // namespace
+
+void Proximity::clear(StepContext& step) {
+  contacts_.resize(0);
+  slots_.resize(0);
+  incidence_.build(slots_.view(), step.mesh.cloth_vertices);
+}
+
+void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
+  const Topology& mesh = step.mesh;
+  const State& s = step.state;
+  const Real h = step.thickness();
+  const ContactMaker maker{s.x0.view(),
+                           s.v.view(),
+                           mesh.rest.view(),
+                           s.inverse_mass.view(),
+                           mesh.object.view(),
+                           mesh.cloth_vertices,
+                           h,
+                           h + static_cast<Real>(0.5) * mesh.median_edge,
+                           step.dt,
+                           step.dt * step.gravity(),
+                           static_cast<Real>(step.parameters.friction_cloth),
+                           static_cast<Real>(step.parameters.friction_obstacle)};
+  contacts_.resize(0);
+  const Array<Pair>& vf = broad_phase.vertex_faces();
+  collect("proximity.vertex_face", vf.size(),
+          FindVertexFace{maker, vf.view(), mesh.face.view(), mesh.vertex_area.view(),
+                         mesh.face_area.view()},
+          found_);
+  append_sorted_("proximity.sort", found_, contacts_);
+  const Array<Pair>& ee = broad_phase.edge_edges();
+  collect("proximity.edge_edge", ee.size(),
+          FindEdgeEdge{maker, ee.view(), mesh.edge.view(), mesh.edge_area.view()}, found_);
+  append_sorted_("proximity.sort", found_, contacts_);
+
+  slots_.resize(contacts_.size());
+  for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots_.view()});
+  incidence_.build(slots_.view(), mesh.cloth_vertices);
+  step.report.proximity_pairs = contacts_.size();
+  step.report.min_gap = static_cast<double>(
+      reduce("proximity.min_gap", contacts_.size(), h, GapOf{contacts_.view()}, Min{}));
+}
+
+}  // namespace icloth::ICLOTH_BUILD

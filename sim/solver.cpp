@@ -1,0 +1,236 @@
+#include "sim/solver.h"
+
+#include "kernels/device.h"
+#include "kernels/parallel.h"
+#include "sim/statistics.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+Real real(double value) { return static_cast<Real>(value); }
+
+/// Host list to device array with a conversion of each element.
+template <class To, class From, class Convert>
+void upload_as(Array<To>& array, const std::vector<From>& from, const Convert& to) {
+  std::vector<To> host;
+  host.reserve(from.size());
+  for (const From& value : from) host.push_back(to(value));
+  array.upload(host);
+}
+
+Vec3r to_real(Vec3d a) { return convert<Real>(a); }
+
+Fabric make_fabric(const Material& material, const Parameters& p) {
+  Fabric f{};
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t c = 0; c < 4; ++c)
+      f.stretching[row][c] = real(p.stretch_scale * material.stretching[row][c]);
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t c = 0; c < 5; ++c)
+      f.bending[row][c] = real(p.bend_scale * material.bending[row][c]);
+  f.damping = real(material.damping);
+  f.measured = material.law == Material::Law::measured;
+  return f;
+}
+
+struct EndVelocity {
+  View<const Vec3r> x0, x1;
+  View<const Real> inverse_mass;
+  View<Vec3r> v;
+  Real inverse_dt;
+  ICLOTH_HD void operator()(Index i) const {
+    v[i] = inverse_mass[i] > 0 ? inverse_dt * (x1[i] - x0[i]) : Vec3r{};
+  }
+};
+
+}  // namespace
+
+void Topology::upload(const World& world) {
+  cloth_vertices = world.cloth_vertices, vertices = world.vertices;
+  cloth_edges = world.cloth_edges, edges = world.edges;
+  cloth_faces = world.cloth_faces, faces = world.faces;
+  hinge_count = static_cast<Index>(world.hinges.size());
+  median_edge = real(world.median_edge);
+  const auto number = [](double v) { return real(v); };
+  upload_as(face, world.face, [](const Triangle& t) { return Int3{{t[0], t[1], t[2]}}; });
+  upload_as(edge, world.edge, [](const std::array<Index, 2>& e) { return Int2{{e[0], e[1]}}; });
+  upload_as(rest, world.rest, to_real);
+  upload_as(mass, world.mass, number);
+  upload_as(vertex_area, world.area, number);
+  upload_as(edge_area, world.edge_area, number);
+  upload_as(face_area, world.face_area, number);
+  upload_as(face_inverse, world.face_inverse, [](const std::array<double, 4>& m) {
+    return Inverse{{real(m[0]), real(m[1]), real(m[2]), real(m[3])}};
+  });
+  object.upload(world.object);
+  face_fabric.upload(world.face_material);
+  upload_as(hinge, world.hinges, [&](const Hinge& h) {
+    const auto fabric_of = [&](Index f) {
+      return world.face_material[static_cast<std::size_t>(f)];
+    };
+    return HingeRest{{{h.vertices[0], h.vertices[1], h.vertices[2], h.vertices[3]}},
+                     fabric_of(h.face0),
+                     fabric_of(h.face1),
+                     real(h.rest_angle),
+                     real(h.rest_length),
+                     real(h.rest_area),
+                     real(h.direction),
+                     real(h.weight)};
+  });
+}
+
+Solver::Solver(std::shared_ptr<const Scene> scene, World world)
+    : scene_(std::move(scene)), world_(std::move(world)), hands_(world_) {
+  mesh_.upload(world_);
+  implicit_.set_up(world_);
+  upload_as(state_.x1, world_.position, to_real);
+  state_.x0.copy_from(state_.x1);
+  state_.candidate.resize(mesh_.cloth_vertices);
+  state_.v.resize(mesh_.vertices);
+  state_.v.fill(Vec3r{});
+  set_parameters(scene_->parameters);
+}
+
+icloth::Build Solver::build() const {
+  if (sizeof(Real) == 8) return icloth::Build::cpu64;
+#if defined(__CUDACC__)
+  return icloth::Build::cuda32;
+#else
+  return icloth::Build::cpu32;
+#endif
+}
+
+void Solver::set_parameters(const Parameters& parameters) {
+  parameters_ = parameters;
+  upload_as(mesh_.fabric, scene_->cloths,
+            [&](const Cloth& cloth) { return make_fabric(cloth.material, parameters); });
+  std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
+  for (std::size_t i = 0; i < world_.mass.size(); ++i) {
+    mass.push_back(real(parameters.density_scale * world_.mass[i]));
+    if (world_.pinned[i] == 0) inverse[i] = Real(1) / mass[i];
+  }
+  state_.mass.upload(mass);
+  state_.inverse_mass.upload(inverse);
+  broad_phase_.invalidate();  // a new thickness needs other boxes
+}
+
+void Solver::begin_substep(double start, double dt) {
+  state_.x0.copy_from(state_.x1);
+  std::vector<Vec3d> end;
+  std::vector<Vec3r> x0, x1, v;
+  for (const WorldObject& object : world_.objects) {
+    if (object.cloth) continue;
+    const Obstacle& obstacle = scene_->obstacles[static_cast<std::size_t>(object.source)];
+    if (!obstacle.moves()) continue;
+    obstacle.pose(start + dt, end);
+    x0.resize(end.size()), x1.resize(end.size()), v.resize(end.size());
+    state_.x0.download_range(object.first_vertex, x0);
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      x1[i] = to_real(end[i]);
+      v[i] = real(1 / dt) * (x1[i] - x0[i]);
+    }
+    state_.x1.upload_range(object.first_vertex, x1);
+    state_.v.upload_range(object.first_vertex, v);
+  }
+}
+
+void Solver::accept_substep(double dt) {
+  for_each("step.velocities", mesh_.cloth_vertices,
+           EndVelocity{state_.x0.view(), state_.x1.view(), state_.inverse_mass.view(),
+                       state_.v.view(), real(1 / dt)});
+}
+
+void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
+
+void Solver::save_start() {
+  start_x_.copy_from(state_.x1);
+  start_v_.copy_from(state_.v);
+}
+
+void Solver::back_to_start() {
+  state_.x1.copy_from(start_x_);
+  state_.v.copy_from(start_v_);
+  broad_phase_.invalidate();
+}
+
+void Solver::report_offending(StepReport& report) const {
+  constexpr std::size_t kMost = 100;
+  report.offending.clear();
+  if (!report.finite) return;
+  for (const Impact& impact : ccd_.impacts().download()) {
+    if (report.offending.size() == kMost) break;
+    const Index* v = impact.s.v;
+    report.offending.push_back({key_is_edge_edge(impact.key), {v[0], v[1], v[2], v[3]}});
+  }
+}
+
+std::vector<Vec3d> Solver::cloth_positions() const {
+  std::vector<Vec3r> x(static_cast<std::size_t>(mesh_.cloth_vertices));
+  state_.x1.download_range(0, x);
+  std::vector<Vec3d> out;
+  out.reserve(x.size());
+  for (const Vec3r& p : x) out.push_back(convert<double>(p));
+  return out;
+}
+
+void Solver::use_hands(std::span<const InputEvent> events) {
+  state_.has_springs = false;
+  if (events.empty() && hands_.empty()) return;
+  const std::vector<Vec3d> x = cloth_positions();
+  hands_.apply(events, parameters_, x);
+  if (hands_.empty()) return;
+  hands_.advance(parameters_.time_step, parameters_, x);
+  std::vector<double> stiffness;
+  std::vector<Vec3d> target;
+  hands_.springs(stiffness, target);
+  upload_as(state_.spring_stiffness, stiffness, real);
+  upload_as(state_.spring_target, target, to_real);
+  state_.has_springs = true;
+}
+
+std::uint64_t Solver::state_hash() const { return hash_state(state_); }
+
+void Solver::positions(std::vector<Vec3f>& out) const {
+  const std::vector<Vec3r> x = state_.x1.download();
+  out.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) out[i] = convert<float>(x[i]);
+}
+
+Snapshot Solver::snapshot() const {
+  Snapshot s;
+  s.step = step_index_;
+  s.time = time_;
+  for (const Vec3r& x : state_.x1.download()) s.positions.push_back(convert<double>(x));
+  for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
+  return s;
+}
+
+void Solver::restore(const Snapshot& snapshot) {
+  if (snapshot.positions.size() != static_cast<std::size_t>(mesh_.vertices) ||
+      snapshot.velocities.size() != snapshot.positions.size())
+    throw std::invalid_argument(
+        "snapshot of another scene: " + std::to_string(snapshot.positions.size()) +
+        " vertices, expected " + std::to_string(mesh_.vertices));
+  step_index_ = snapshot.step;
+  time_ = snapshot.time;
+  upload_as(state_.x1, snapshot.positions, to_real);
+  upload_as(state_.v, snapshot.velocities, to_real);
+  state_.x0.copy_from(state_.x1);
+  hands_.clear();
+  broad_phase_.invalidate();
+}
+
+std::vector<HandleState> Solver::handles() const {
+  if (hands_.empty()) return {};
+  return hands_.states(cloth_positions());
+}
+
+std::unique_ptr<Simulator> make_solver(std::shared_ptr<const Scene> scene, World world) {
+  return std::make_unique<Solver>(std::move(scene), std::move(world));
+}
+
+#if defined(__CUDACC__)
+bool device_usable(std::string* reason) { return device_usable(reason, 0); }
+#endif
+
+}  // namespace icloth::ICLOTH_BUILD

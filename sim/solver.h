@@ -1,0 +1,67 @@
+// The solver of one build: the stages, the state and what connects them. The order of things is in
+// sim/step.cpp, which is the file to read first.
+#pragma once
+
+#include <memory>
+
+#include "sim/broad_phase.h"
+#include "sim/ccd.h"
+#include "sim/hands.h"
+#include "sim/impact_zones.h"
+#include "sim/implicit.h"
+#include "sim/proximity.h"
+#include "sim/simulator.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class Solver final : public Simulator {
+ public:
+  Solver(std::shared_ptr<const Scene> scene, World world);
+
+  // sim/step.cpp
+  StepReport step(std::span<const InputEvent> events) override;
+
+  // sim/solver.cpp
+  icloth::Build build() const override;
+  const Scene& scene() const override { return *scene_; }
+  const Parameters& parameters() const override { return parameters_; }
+  void set_parameters(const Parameters& parameters) override;
+  double time() const override { return time_; }
+  std::int64_t step_index() const override { return step_index_; }
+  std::uint64_t state_hash() const override;
+  void positions(std::vector<Vec3f>& out) const override;
+  Snapshot snapshot() const override;
+  void restore(const Snapshot& snapshot) override;
+  std::vector<HandleState> handles() const override;
+
+ private:
+  /// One attempt at a substep; false when impacts are left or numbers are not finite.
+  bool try_substep(StepReport& report, double start, double dt);
+  void begin_substep(double start, double dt);
+  void accept_substep(double dt);
+  void report_offending(StepReport& report) const;
+
+  void use_hands(std::span<const InputEvent> events);
+  void back_to_substep_start();
+  void save_start();
+  void back_to_start();
+  std::vector<Vec3d> cloth_positions() const;
+
+  std::shared_ptr<const Scene> scene_;
+  World world_;
+  Parameters parameters_;
+  Topology mesh_;
+  State state_;
+  Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
+  Hands hands_;
+  double time_ = 0;
+  std::int64_t step_index_ = 0;
+
+  BroadPhase broad_phase_;
+  Proximity proximity_;
+  Implicit implicit_;
+  Ccd ccd_;
+  ImpactZones impact_zones_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

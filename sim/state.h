@@ -1,0 +1,42 @@
+// What changes during a simulation. Every buffer: meaning [unit] (shape), written by.
+#pragma once
+
+#include "kernels/stencil.h"
+#include "sim/parameters.h"
+#include "sim/report.h"
+#include "sim/topology.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+struct State {
+  Array<Vec3r> x0;         ///< start of the step [m] (vertices), begin_step
+  Array<Vec3r> x1;         ///< end of the step, candidate until accepted [m] (vertices), implicit,
+                           ///< impact_zones; obstacles: begin_step
+  Array<Vec3r> candidate;  ///< x*, the end without impacts [m] (cloth_vertices), implicit
+  Array<Vec3r> v;          ///< velocity [m/s] (vertices), accept; obstacles: begin_step
+  Array<Real> mass;        ///< with density_scale [kg] (cloth_vertices), set_parameters
+  Array<Real> inverse_mass;  ///< 0 for pinned and obstacle vertices [1/kg] (vertices)
+
+  /// Springs of the hands, one entry a cloth vertex; only used when has_springs.
+  Array<Real> spring_stiffness;  ///< [N/m] (cloth_vertices), begin_step
+  Array<Vec3r> spring_target;    ///< [m] (cloth_vertices), begin_step
+  bool has_springs = false;
+};
+
+/// What one (sub)step works with.
+struct StepContext {
+  const Topology& mesh;
+  const Parameters& parameters;
+  State& state;
+  StepReport& report;
+  Real dt;  ///< [s]
+
+  Real offset() const { return static_cast<Real>(parameters.offset); }
+  Real thickness() const { return static_cast<Real>(parameters.thickness); }
+  Vec3r gravity() const {
+    return {static_cast<Real>(parameters.gravity_x), static_cast<Real>(parameters.gravity_y),
+            static_cast<Real>(parameters.gravity_z)};
+  }
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,147 @@
+#include "sim/statistics.h"
+
+#include <cstring>
+
+#include "kernels/bending.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+struct FaceEnergy {
+  double energy, strain;
+};
+struct CombineFaces {
+  ICLOTH_HD FaceEnergy operator()(FaceEnergy a, FaceEnergy b) const {
+    return {a.energy + b.energy, Max{}(a.strain, b.strain)};
+  }
+};
+
+struct MembraneEnergy {
+  View<const Int3> face;
+  View<const Topology::Inverse> inverse;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const Vec3r> x;
+
+  ICLOTH_HD FaceEnergy operator()(Index i) const {
+    const Int3 f = face[i];
+    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
+    const Sym2 g = green_strain(face_frame(xs, inverse[i].m));
+    const Stiffness k = stiffness_at(fabric[face_fabric[i]], g);
+    return {static_cast<double>(area[i] * membrane_energy(k, g)),
+            static_cast<double>(std::sqrt(std::fmax(largest_stretch2(g), Real(0))) - 1)};
+  }
+};
+
+struct BendingEnergy {
+  View<const HingeRest> hinge;
+  View<const Fabric> fabric;
+  View<const Vec3r> x;
+
+  ICLOTH_HD double operator()(Index i) const {
+    const HingeRest& h = hinge[i];
+    Vec3r xs[4];
+    for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
+    const Real theta = hinge_angle(xs).theta;
+    const Real k = hinge_stiffness(fabric[h.fabric0], fabric[h.fabric1], h, theta);
+    return 0.5 * static_cast<double>(k * (theta - h.angle) * (theta - h.angle));
+  }
+};
+
+struct VertexEnergy {
+  double kinetic, potential, speed2;
+};
+struct CombineVertices {
+  ICLOTH_HD VertexEnergy operator()(VertexEnergy a, VertexEnergy b) const {
+    return {a.kinetic + b.kinetic, a.potential + b.potential, Max{}(a.speed2, b.speed2)};
+  }
+};
+
+struct MotionEnergy {
+  View<const Vec3r> x, v;
+  View<const Real> mass;
+  Vec3d gravity;
+
+  ICLOTH_HD VertexEnergy operator()(Index i) const {
+    const double m = static_cast<double>(mass[i]);
+    const double v2 = norm2(convert<double>(v[i]));
+    return {0.5 * m * v2, -m * dot(gravity, convert<double>(x[i])), v2};
+  }
+};
+
+/// Finaliser of MurmurHash3 (Appleby, public domain): spreads every input bit over the word.
+ICLOTH_HD std::uint64_t mix(std::uint64_t h) {
+  h ^= h >> 33;
+  h *= 0xff51afd7ed558ccdULL;
+  h ^= h >> 33;
+  h *= 0xc4ceb9fe1a85ec53ULL;
+  return h ^ (h >> 33);
+}
+
+ICLOTH_HD std::uint64_t bits_of(Real value) {
+  if constexpr (sizeof(Real) == 8) {
+    std::uint64_t u;
+    memcpy(&u, &value, sizeof u);
+    return u;
+  } else {
+    std::uint32_t u;
+    memcpy(&u, &value, sizeof u);
+    return u;
+  }
+}
+
+/// Position-dependent hash of one vertex; the sum over vertices needs no order.
+struct HashVertex {
+  View<const Vec3r> x, v;
+  ICLOTH_HD std::uint64_t operator()(Index i) const {
+    std::uint64_t h = mix(static_cast<std::uint64_t>(i) + 1);
+    const Real values[6] = {x[i].x, x[i].y, x[i].z, v[i].x, v[i].y, v[i].z};
+    for (const Real value : values) h = mix(h ^ bits_of(value)) + h;
+    return h;
+  }
+};
+
+struct CountInfinite {
+  View<const Vec3r> x;
+  ICLOTH_HD Index operator()(Index i) const {
+    const Real sum = (x[i].x - x[i].x) + (x[i].y - x[i].y) + (x[i].z - x[i].z);
+    return sum == 0 ? 0 : 1;  // ∞ − ∞ and NaN are not zero
+  }
+};
+
+}  // namespace
+
+void report_state(const Topology& mesh, const State& state, const Parameters& parameters,
+                  StepReport& report) {
+  const FaceEnergy faces =
+      reduce("statistics.membrane", mesh.cloth_faces, FaceEnergy{0, 0},
+             MembraneEnergy{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
+                            mesh.face_fabric.view(), mesh.fabric.view(), state.x1.view()},
+             CombineFaces{});
+  const double bending =
+      reduce("statistics.bending", mesh.hinge_count, 0.0,
+             BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), state.x1.view()}, Sum{});
+  const Vec3d gravity{parameters.gravity_x, parameters.gravity_y, parameters.gravity_z};
+  const VertexEnergy motion = reduce(
+      "statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},
+      MotionEnergy{state.x1.view(), state.v.view(), state.mass.view(), gravity}, CombineVertices{});
+  report.elastic_energy = faces.energy + bending;
+  report.max_strain = faces.strain;
+  report.kinetic_energy = motion.kinetic;
+  report.gravity_energy = motion.potential;
+  report.max_speed = std::sqrt(motion.speed2);
+}
+
+std::uint64_t hash_state(const State& state) {
+  return reduce("statistics.hash", state.x1.size(), std::uint64_t{0},
+                HashVertex{state.x1.view(), state.v.view()}, Sum{});
+}
+
+bool all_finite(const State& state) {
+  return reduce("statistics.finite", state.x1.size(), Index{0}, CountInfinite{state.x1.view()},
+                Sum{}) == 0;
+}
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,108 @@
+// READ FIRST. One step of the simulation: the pipeline of Tang et al. 2018, Section 2.4.
+//
+//   begin_substep             obstacles at t and t + dt, x0 ← x1
+//   proximity                 (1) VF and EE pairs closer than the thickness        Section 2.5
+//   implicit                  (2) candidate x1, may penetrate                      Section 2.4–2.5
+//   repeat
+//     ccd                     (3) impacts on the segments x0 → x1; first all, then only pairs
+//                                 with a dirty vertex                              Algorithm 1
+//     none left → accept
+//     impact_zones            (4) moves only what must move                        Algorithms 2–3
+//   impacts left → refuse, halve the step and try again; penetrations are never accepted.
+
+#include <chrono>
+
+#include "sim/solver.h"
+#include "sim/statistics.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// Runs a stage and adds its wall time to one row of the report.
+template <class Stage>
+void timed(double& milliseconds, const Stage& stage) {
+  const auto begin = std::chrono::steady_clock::now();
+  stage();
+  milliseconds +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+bool Solver::try_substep(StepReport& report, double start, double dt) {
+  begin_substep(start, dt);
+  StepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt)};
+
+  timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
+  timed(report.ms_proximity, [&] {
+    if (parameters_.proximity_enabled)
+      proximity_.find(step, broad_phase_);
+    else
+      proximity_.clear(step);
+  });
+  timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
+  report.finite = all_finite(state_);
+  if (!report.finite) return false;
+
+  impact_zones_.begin_step();
+  for (int round = 0;; ++round) {
+    timed(report.ms_broad_phase, [&] { broad_phase_.cover_candidate(step); });
+    timed(report.ms_ccd, [&] { ccd_.find(step, broad_phase_, impact_zones_.dirty(), round > 0); });
+    report.impacts_left = ccd_.impacts().size();
+    if (round == 0) report.impacts_first += report.impacts_left;
+    if (report.impacts_left == 0) return true;
+    if (round == parameters_.max_rounds || !parameters_.impact_zones_enabled) return false;
+    ++report.rounds;
+    timed(report.ms_impact_zones, [&] { impact_zones_.solve(step, ccd_.impacts()); });
+    report.finite = all_finite(state_);
+    if (!report.finite) return false;
+  }
+}
+
+StepReport Solver::step(std::span<const InputEvent> events) {
+  StepReport report;
+  report.step = step_index_;
+  report.dt = parameters_.time_step;
+  timed(report.ms_total, [&] {
+    save_start();
+    use_hands(events);
+    // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.
+    const int levels = parameters_.max_substep_levels;
+    const std::int64_t whole = std::int64_t{1} << levels;
+    std::int64_t done = 0;
+    int level = 0;
+    report.substeps = 0;
+    while (done < whole && report.accepted) {
+      const double dt = report.dt / static_cast<double>(std::int64_t{1} << level);
+      const double start =
+          time_ + report.dt * static_cast<double>(done) / static_cast<double>(whole);
+      if (try_substep(report, start, dt)) {
+        accept_substep(dt);
+        ++report.substeps;
+        done += whole >> level;
+        if (level > 0 && done % (whole >> (level - 1)) == 0) --level;
+      } else {
+        report_offending(report);
+        back_to_substep_start();
+        ++report.retries;
+        report.accepted = ++level <= levels;
+      }
+    }
+    if (report.accepted) {
+      report.offending.clear();
+      time_ += report.dt;
+      report.step = ++step_index_;
+    } else {
+      back_to_start();
+    }
+    report_state(mesh_, state_, parameters_, report);
+    report.state_hash = hash_state(state_);
+  });
+  report.time = time_;
+  report.candidate_pairs = broad_phase_.candidate_count();
+  report.ms_other = report.ms_total - report.ms_proximity - report.ms_implicit -
+                    report.ms_broad_phase - report.ms_ccd - report.ms_impact_zones;
+  return report;
+}
+
+}  // namespace icloth::ICLOTH_BUILD

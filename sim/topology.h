@@ -1,0 +1,38 @@
+// The scene in the memory of the device: constant during a simulation.
+#pragma once
+
+#include "kernels/bending.h"
+#include "kernels/stencil.h"
+#include "sim/world.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Vertices, edges and faces of cloths come before those of obstacles.
+struct Topology {
+  Index cloth_vertices = 0, vertices = 0;
+  Index cloth_edges = 0, edges = 0;
+  Index cloth_faces = 0, faces = 0;
+  Index hinge_count = 0;
+  Real median_edge = 0;  ///< rest length [m]
+
+  Array<Int3> face;          ///< vertices (faces)
+  Array<Int2> edge;          ///< vertices, smaller first (edges)
+  Array<Vec3r> rest;         ///< rest shape [m] (cloth_vertices)
+  Array<Real> mass;          ///< before density_scale [kg] (cloth_vertices)
+  Array<Real> vertex_area;   ///< [m²] (cloth_vertices)
+  Array<Real> edge_area;     ///< [m²] (cloth_edges)
+  Array<Real> face_area;     ///< rest [m²] (cloth_faces)
+  Array<Index> object;       ///< object number of each vertex (vertices)
+  Array<HingeRest> hinge;    ///< (hinge_count)
+  Array<Fabric> fabric;      ///< one a cloth
+  Array<Index> face_fabric;  ///< (cloth_faces)
+
+  struct Inverse {
+    Real m[4];
+  };
+  Array<Inverse> face_inverse;  ///< rows of Dm⁻¹ [1/m] (cloth_faces)
+
+  void upload(const World& world);
+};
+
+}  // namespace icloth::ICLOTH_BUILD
