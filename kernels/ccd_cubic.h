@@ -11,11 +11,49 @@
 // 170 u S for 3 k1 and 3 k2, S = |b||c||p| with |·| the largest component at either end. (Cross
 // product 8 u |b||c|, m 20 u |b||c|, then the two dot products and the sum; contraction to fused
 // multiply-adds only lowers it.) Underflow is covered by a floor under the three factors.
+//
+// T is float (in the filter), double or DoubleDouble.
 #pragma once
 
+#include "kernels/double_double.h"
 #include "kernels/vec.h"
 
 namespace icloth {
+
+/// A time after the end: does not happen in [0,1].
+inline constexpr double kNever = 2;
+
+/// Bound of the relative error of one operation.
+template <class T>
+inline constexpr T kRoundoff{};
+template <>
+inline constexpr float kRoundoff<float> = 0x1p-24f;
+template <>
+inline constexpr double kRoundoff<double> = 0x1p-53;
+template <>
+inline constexpr DoubleDouble kRoundoff<DoubleDouble> = DoubleDouble(0x1p-102);
+
+namespace detail {
+
+template <class T>
+ICLOTH_HD T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+ICLOTH_HD T larger(T a, T b) {
+  return a < b ? b : a;
+}
+template <class T>
+ICLOTH_HD T absolute(T a) {
+  return a < T(0) ? -a : a;
+}
+template <class T>
+ICLOTH_HD T largest_component(Vec3<T> a, Vec3<T> b) {
+  const T x = larger(absolute(a.x), absolute(b.x)), y = larger(absolute(a.y), absolute(b.y));
+  return larger(larger(x, y), larger(absolute(a.z), absolute(b.z)));
+}
+
+}  // namespace detail
 
 /// The three vectors whose determinant is the volume, at t = 0 and t = 1.
 /// vf: the two edges of the face from v0, and vertex − v0. ee: both edges, and b0 − a0.
@@ -37,17 +75,13 @@ struct VolumeCubic {
   }
 };
 
-/// Half the distance from 1 to the next number: the largest relative rounding error.
-template <class T>
-inline constexpr T kRoundoff = sizeof(T) == 4 ? T(0x1p-24) : T(0x1p-53);
-
 template <class T>
 ICLOTH_HD VolumeCubic<T> volume_cubic(const VolumeVectors<T>& v) {
   // Below this floor products may underflow; raising a factor only widens the bound.
-  const T floor = sizeof(T) == 4 ? T(1e-10) : T(1e-90);
-  const T size_b = std::fmax(std::fmax(norm_max(v.b0), norm_max(v.b1)), floor);
-  const T size_c = std::fmax(std::fmax(norm_max(v.c0), norm_max(v.c1)), floor);
-  const T size_p = std::fmax(std::fmax(norm_max(v.p0), norm_max(v.p1)), floor);
+  const T floor = sizeof(T) == 4 ? T(1e-10) : T(1e-60);
+  const T size_b = detail::larger(detail::largest_component(v.b0, v.b1), floor);
+  const T size_c = detail::larger(detail::largest_component(v.c0, v.c1), floor);
+  const T size_p = detail::larger(detail::largest_component(v.p0, v.p1), floor);
   const T unit = kRoundoff<T> * (size_b * size_c * size_p);
   const Vec3<T> n0 = cross(v.b0, v.c0), n1 = cross(v.b1, v.c1);
   const Vec3<T> m = cross(v.b0, v.c1) + cross(v.b1, v.c0);
@@ -59,105 +93,55 @@ ICLOTH_HD VolumeCubic<T> volume_cubic(const VolumeVectors<T>& v) {
           T(170) * unit};
 }
 
-/// Bernstein coefficients and the bound within which the computed cubic, evaluated in fp64
-/// anywhere in [0,1], agrees with the true volume.
+/// Bernstein coefficients and the bound within which the computed cubic, evaluated in T anywhere in
+/// [0,1], agrees with the true volume.
+template <class T>
 struct Bernstein3 {
-  double c[4];
-  double error;
+  T c[4];
+  T error;
 
-  ICLOTH_HD explicit Bernstein3(const VolumeCubic<double>& f)
-      : c{f.a, f.k1x3 / 3, f.k2x3 / 3, f.b} {
+  ICLOTH_HD explicit Bernstein3(const VolumeCubic<T>& f)
+      : c{f.a, f.k1x3 / T(3), f.k2x3 / T(3), f.b} {
     // 170/3 u S of the coefficients; 32 u max|c| for the division, for three rounds of linear
-    // interpolation (9 u) and for parameters that are off by one rounding (|f'| ≤ 6 max|c|).
-    const double largest = std::fmax(std::fmax(std::fabs(c[0]), std::fabs(c[1])),
-                                     std::fmax(std::fabs(c[2]), std::fabs(c[3])));
-    error = f.error_inner / 3 + 32 * kRoundoff<double> * largest;
+    // interpolation (9 u), for 1 − t (3 u) and for times off by one rounding (|f'| ≤ 6 max|c|).
+    const T ends = detail::larger(detail::absolute(c[0]), detail::absolute(c[3]));
+    const T inner = detail::larger(detail::absolute(c[1]), detail::absolute(c[2]));
+    error = f.error_inner / T(3) + T(32) * kRoundoff<T> * detail::larger(ends, inner);
   }
 
-  /// All coefficients vanish within the error: coplanar throughout as far as fp64 can tell.
+  /// All coefficients vanish within the error: coplanar throughout as far as T can tell.
   ICLOTH_HD bool vanishes() const {
-    return std::fabs(c[0]) <= error && std::fabs(c[1]) <= error && std::fabs(c[2]) <= error &&
-           std::fabs(c[3]) <= error;
+    for (T x : c) {
+      if (detail::absolute(x) > error) return false;
+    }
+    return true;
   }
 
-  ICLOTH_HD double operator()(double t) const {
-    const double s = 1 - t;
-    const double x = s * c[0] + t * c[1], y = s * c[1] + t * c[2], z = s * c[2] + t * c[3];
+  ICLOTH_HD T operator()(T t) const {
+    const T s = T(1) - t;
+    const T x = s * c[0] + t * c[1], y = s * c[1] + t * c[2], z = s * c[2] + t * c[3];
+    return s * (s * x + t * y) + t * (s * y + t * z);
+  }
+
+  /// A third of the derivative.
+  ICLOTH_HD T slope(T t) const {
+    const T s = T(1) - t, x = c[1] - c[0], y = c[2] - c[1], z = c[3] - c[2];
     return s * (s * x + t * y) + t * (s * y + t * z);
   }
 
   /// Coefficients over the interval [t0,t1] (polar form), into out[4].
-  ICLOTH_HD void restrict_to(double t0, double t1, double* out) const {
-    const double s0 = 1 - t0, s1 = 1 - t1;
-    const double x0 = s0 * c[0] + t0 * c[1], y0 = s0 * c[1] + t0 * c[2], z0 = s0 * c[2] + t0 * c[3];
-    const double x1 = s1 * c[0] + t1 * c[1], y1 = s1 * c[1] + t1 * c[2], z1 = s1 * c[2] + t1 * c[3];
-    const double p00 = s0 * x0 + t0 * y0, q00 = s0 * y0 + t0 * z0;
-    const double p01 = s1 * x0 + t1 * y0, q01 = s1 * y0 + t1 * z0;
-    const double p11 = s1 * x1 + t1 * y1, q11 = s1 * y1 + t1 * z1;
+  ICLOTH_HD void restrict_to(T t0, T t1, T* out) const {
+    const T s0 = T(1) - t0, s1 = T(1) - t1;
+    const T x0 = s0 * c[0] + t0 * c[1], y0 = s0 * c[1] + t0 * c[2], z0 = s0 * c[2] + t0 * c[3];
+    const T x1 = s1 * c[0] + t1 * c[1], y1 = s1 * c[1] + t1 * c[2], z1 = s1 * c[2] + t1 * c[3];
+    const T p00 = s0 * x0 + t0 * y0, q00 = s0 * y0 + t0 * z0;
+    const T p01 = s1 * x0 + t1 * y0, q01 = s1 * y0 + t1 * z0;
+    const T p11 = s1 * x1 + t1 * y1, q11 = s1 * y1 + t1 * z1;
     out[0] = s0 * p00 + t0 * q00;
     out[1] = s1 * p00 + t1 * q00;
     out[2] = s1 * p01 + t1 * q01;
     out[3] = s1 * p11 + t1 * q11;
   }
 };
-
-namespace detail {
-
-/// Extreme parameters at which the convex hull of the points (i/3, c[i]) meets `level`, c[0] being
-/// above it; first > 1 when all points lie above. The first time that the cubic comes down to the
-/// level, if there is one, lies between.
-struct HullCut {
-  double first, last;
-};
-ICLOTH_HD inline HullCut cut_hull(const double* c, double level) {
-  // The hull's boundary consists of segments between control points, so the extreme crossings are
-  // among those of all pairs above/below.
-  HullCut cut{2, -1};
-  for (int i = 1; i < 4; ++i) {
-    if (c[i] > level) continue;
-    for (int j = 0; j < 4; ++j) {
-      if (!(c[j] > level)) continue;
-      const double x = (j + (i - j) * ((c[j] - level) / (c[j] - c[i]))) / 3;
-      cut.first = std::fmin(cut.first, x);
-      cut.last = std::fmax(cut.last, x);
-    }
-  }
-  return cut;
-}
-
-}  // namespace detail
-
-inline constexpr double kNever = 2;
-
-/// A time in [start, first zero of f at or after start]: f is certainly nonzero from `start` up to
-/// it. kNever when f is certainly nonzero on [start,1]. Bézier clipping, with halving as the
-/// fallback.
-ICLOTH_HD inline double first_zero_bound(const Bernstein3& f, double start) {
-  double t0 = start, t1 = 1;
-  for (int iteration = 0; iteration < 80; ++iteration) {
-    double c[4];
-    f.restrict_to(t0, t1, c);
-    if (!(std::fabs(c[0]) > f.error)) return t0;
-    if (c[0] < 0) {
-      for (double& x : c) x = -x;
-    }
-    const detail::HullCut cut = detail::cut_hull(c, f.error);
-    const double width = t1 - t0;
-    if (cut.first > 1) {  // nothing in this part; go on with the rest
-      if (t1 >= 1) return kNever;
-      t0 = t1;
-      t1 = 1;
-      continue;
-    }
-    if (width < 0x1p-50) return t0;
-    // The cut is taken a little wider than computed: 2⁻⁴⁸ of the interval.
-    const double first = std::fmax(cut.first - 0x1p-48, 0.0),
-                 last = std::fmin(cut.last + 0x1p-48, 1.0);
-    t1 = last < 1 ? t0 + width * last : t1;
-    t0 += width * first;
-    if (last - first > 0.6) t1 = t0 + 0.5 * (t1 - t0);
-  }
-  return t0;
-}
 
 }  // namespace icloth

@@ -1,15 +1,14 @@
 // Two primitives, vertex and face or edge and edge, whose points move linearly: differences of
-// their points, closest points at a time, and certified separation by a fixed direction.
+// their points, and certified separation by a fixed direction.
 //
-// A direction d separates the primitives at time t when d·(y − x) > 0 for all points x of the first
-// and y of the second. For a fixed d these are a few linear functions of t, so a separation
-// interval follows from their values at t = 0 and t = 1. The certificate bounds its own rounding
+// A direction d separates the primitives at time t when d·(y − x) > 0 for all points x of the one
+// and y of the other. For a fixed d these are three or four linear functions of t, so the time of
+// separation follows from their values at t = 0 and t = 1. The certificate bounds its own rounding
 // errors and does not depend on how d was found: a badly chosen d costs a false positive, never a
 // missed contact.
 #pragma once
 
 #include "kernels/ccd_cubic.h"
-#include "kernels/distance.h"
 
 namespace icloth {
 
@@ -25,7 +24,8 @@ enum class PairKind { vf, ee };
 template <PairKind K>
 inline constexpr int kDifferences = K == PairKind::vf ? 3 : 4;
 
-/// Difference i at one end. vf: vertex − v_i. ee: b0 − a0, b0 − a1, b1 − a0, b1 − a1.
+/// Difference i of the points x at one end. vf: vertex − v_i. ee: b0 − a0, b0 − a1, b1 − a0, b1 −
+/// a1.
 template <PairKind K, class To, class T>
 ICLOTH_HD Vec3<To> point_difference(const Vec3<T>* x, int i) {
   if constexpr (K == PairKind::vf) return convert<To>(x[0]) - convert<To>(x[i + 1]);
@@ -35,147 +35,128 @@ ICLOTH_HD Vec3<To> point_difference(const Vec3<T>* x, int i) {
 /// Edges of the face from v0 and vertex − v0, or both edges and b0 − a0.
 template <PairKind K, class To, class T>
 ICLOTH_HD VolumeVectors<To> volume_vectors(const CcdQuery<T>& q) {
-  const int o = K == PairKind::vf ? 1 : 0;  // where b and p start
-  const int c0 = K == PairKind::vf ? 1 : 2, c1 = 3;
-  const int b1 = K == PairKind::vf ? 2 : 1, p = K == PairKind::vf ? 0 : 2;
-  const auto at = [](Vec3<T> a) { return convert<To>(a); };
-  return {at(q.p0[b1]) - at(q.p0[o]), at(q.p0[c1]) - at(q.p0[c0]), at(q.p0[p]) - at(q.p0[o]),
-          at(q.p1[b1]) - at(q.p1[o]), at(q.p1[c1]) - at(q.p1[c0]), at(q.p1[p]) - at(q.p1[o])};
+  constexpr bool vf = K == PairKind::vf;
+  // b from o to b1, c from c0 to the last point, p from o.
+  constexpr int o = vf ? 1 : 0, b1 = vf ? 2 : 1, c0 = vf ? 1 : 2, p = vf ? 0 : 2;
+  const auto difference = [](Vec3<T> x, Vec3<T> y) { return convert<To>(x) - convert<To>(y); };
+  return {difference(q.p0[b1], q.p0[o]), difference(q.p0[3], q.p0[c0]),
+          difference(q.p0[p], q.p0[o]),  difference(q.p1[b1], q.p1[o]),
+          difference(q.p1[3], q.p1[c0]), difference(q.p1[p], q.p1[o])};
 }
 
-/// True when a coordinate axis separates the primitives at both ends, hence always: then no swept
-/// boxes meet at equal times. Exact: the sign of a difference of two floating-point numbers is.
+/// True when a coordinate axis separates the primitives at both ends, hence always. Exact: the sign
+/// of the difference of two floating-point numbers is.
 template <PairKind K, class T>
 ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1) {
-  bool above[3] = {true, true, true}, below[3] = {true, true, true};
-  for (int i = 0; i < kDifferences<K>; ++i) {
-    above[0] &= r0[i].x > 0 && r1[i].x > 0;
-    above[1] &= r0[i].y > 0 && r1[i].y > 0;
-    above[2] &= r0[i].z > 0 && r1[i].z > 0;
-    below[0] &= r0[i].x < 0 && r1[i].x < 0;
-    below[1] &= r0[i].y < 0 && r1[i].y < 0;
-    below[2] &= r0[i].z < 0 && r1[i].z < 0;
+  Vec3<T> least = r0[0], most = r0[0];
+  const auto include = [&](Vec3<T> r) {
+    least = {detail::smaller(least.x, r.x), detail::smaller(least.y, r.y),
+             detail::smaller(least.z, r.z)};
+    most = {detail::larger(most.x, r.x), detail::larger(most.y, r.y), detail::larger(most.z, r.z)};
+  };
+  include(r1[0]);
+  for (int i = 1; i < kDifferences<K>; ++i) {
+    include(r0[i]);
+    include(r1[i]);
   }
-  return above[0] || above[1] || above[2] || below[0] || below[1] || below[2];
+  return detail::larger(least.x, detail::larger(least.y, least.z)) > T(0) ||
+         detail::smaller(most.x, detail::smaller(most.y, most.z)) < T(0);
 }
 
-/// All differences in fp64 at both ends.
-template <PairKind K>
+/// All differences in N (double or DoubleDouble) at both ends.
+template <PairKind K, class N>
 struct PairMotion {
   static constexpr int kCount = kDifferences<K>;
-  Vec3d r0[kCount], r1[kCount];
-  Vec3d size;  // largest |component| of the differences, axis by axis
+  Vec3<N> r0[kCount], r1[kCount];
+  Vec3<N> size;  // largest |component| of the differences, axis by axis
 
   template <class T>
   ICLOTH_HD explicit PairMotion(const CcdQuery<T>& q) {
     for (int i = 0; i < kCount; ++i) {
-      r0[i] = point_difference<K, double>(q.p0, i);
-      r1[i] = point_difference<K, double>(q.p1, i);
+      r0[i] = point_difference<K, N>(q.p0, i);
+      r1[i] = point_difference<K, N>(q.p1, i);
       grow(r0[i]);
       grow(r1[i]);
     }
   }
-  ICLOTH_HD Vec3d at(double t, int i) const { return (1 - t) * r0[i] + t * r1[i]; }
+  ICLOTH_HD Vec3<N> at(N t, int i) const { return (N(1) - t) * r0[i] + t * r1[i]; }
 
  private:
-  ICLOTH_HD void grow(Vec3d r) {
-    size = {std::fmax(size.x, std::fabs(r.x)), std::fmax(size.y, std::fabs(r.y)),
-            std::fmax(size.z, std::fabs(r.z))};
+  ICLOTH_HD void grow(Vec3<N> r) {
+    size = {detail::larger(size.x, detail::absolute(r.x)),
+            detail::larger(size.y, detail::absolute(r.y)),
+            detail::larger(size.z, detail::absolute(r.z))};
   }
-};
-
-/// End of the time interval that starts at t and in which d separates the primitives by more than
-/// `margin` [length]; t itself when they are not separated there. Everything rounds down.
-template <PairKind K>
-ICLOTH_HD double separated_until(const PairMotion<K>& pair, Vec3d d, double margin, double t) {
-  // Dot product of rounded differences: 4 roundings a term at most; 5 and a floor for underflow.
-  const double error = 5 * kRoundoff<double> *
-                           (std::fabs(d.x) * pair.size.x + std::fabs(d.y) * pair.size.y +
-                            std::fabs(d.z) * pair.size.z) +
-                       1e-300 + (margin > 0 ? margin * norm(d) : 0.0);
-  double end = 1;
-  for (int i = 0; i < PairMotion<K>::kCount; ++i) {
-    const double s0 = dot(d, pair.r0[i]) - error, s1 = dot(d, pair.r1[i]) - error;
-    if (s0 > 0 && s1 > 0) continue;
-    const double crossing = s0 / (s0 - s1);
-    if (s0 > 0) {  // positive before the crossing
-      end = std::fmin(end, crossing * (1 - 0x1p-50));
-    } else if (!(s1 > 0) || !(t > crossing * (1 + 0x1p-50))) {
-      return t;
-    }
-  }
-  return std::fmax(end, t);
-}
-
-/// Closest points at one time and directions that may separate.
-struct ClosestPair {
-  double w[4];    // weights of the four points in the gap vector Σ w x
-  Vec3d first;    // most promising direction, from the closest features
-  Vec3d second;   // another one, worth trying when `doubtful`
-  bool doubtful;  // ill-conditioned or close to a change of features
 };
 
 namespace detail {
 
-/// Component of r orthogonal to e; twice, so that nothing along e but rounding of the result stays.
-ICLOTH_HD inline Vec3d orthogonal_to(Vec3d r, Vec3d e) {
-  const double ee = norm2(e);
-  if (!(ee > 0)) return r;
-  const Vec3d d = r - (dot(r, e) / ee) * e;
-  return d - (dot(d, e) / ee) * e;
-}
-ICLOTH_HD inline Vec3d towards(Vec3d d, Vec3d r) { return dot(d, r) < 0 ? -d : d; }
+/// Time interval in which a few linear functions of t are all positive, narrowed down one by one.
+template <class N>
+struct PositiveSpan {
+  N t;            // the interval has to hold this time …
+  N end{kNever};  // … and reaches to here
+  bool holds{true};
 
-inline constexpr double kNearBorder = 1e-6;
+  /// s0, s1: lower bounds of the function at t = 0 and 1, relative rounding errors allowed.
+  ICLOTH_HD void narrow(N s0, N s1) {
+    if (s0 > N(0) && s1 > N(0)) return;
+    const N crossing = s0 / (s0 - s1);
+    const N pad = N(16) * kRoundoff<N>;
+    if (s0 > N(0)) {  // positive before the crossing
+      end = smaller(end, crossing * (N(1) - pad));
+    } else if (!(s1 > N(0)) || !(t > crossing * (N(1) + pad))) {
+      holds = false;
+    }
+  }
+  ICLOTH_HD N result() const { return holds ? larger(end, t) : t; }
+};
+
+ICLOTH_HD inline Vec3d rounded(Vec3d a) { return a; }
+ICLOTH_HD inline Vec3d rounded(Vec3<DoubleDouble> a) { return {a.x.hi, a.y.hi, a.z.hi}; }
+
+template <class N>
+ICLOTH_HD N component(Vec3<N> a, int axis) {
+  return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
 
 }  // namespace detail
 
-/// Closest points of vertex and face at time t.
-ICLOTH_HD inline ClosestPair closest_pair(const PairMotion<PairKind::vf>& pair, double t) {
-  const Vec3d r[3] = {pair.at(t, 0), pair.at(t, 1), pair.at(t, 2)};
-  const TrianglePoint<double> x = closest_point_triangle(Vec3d{}, r[0], r[1], r[2]);
-  const Vec3d n = detail::towards(cross(r[1] - r[0], r[2] - r[0]), r[0]);
-  ClosestPair out{{1, -x.w[0], -x.w[1], -x.w[2]}, n, n, true};
-  // Opposite to the smallest weight lies the closest edge (or one of the two at a vertex).
-  const int k = x.w[0] <= x.w[1] ? (x.w[0] <= x.w[2] ? 0 : 2) : (x.w[1] <= x.w[2] ? 1 : 2);
-  const int i = (k + 1) % 3, j = (k + 2) % 3;
-  const Vec3d edge = r[j] - r[i];
-  Vec3d side;
-  if (x.w[i] > 0 && x.w[j] > 0) {
-    side = detail::orthogonal_to(x.w[i] > x.w[j] ? r[i] : r[j], edge);
-  } else {
-    side = x.w[i] > 0 ? r[i] : r[j];
+/// End of the time interval that starts at t and in which d separates the primitives by more than
+/// `margin` [length]; kNever when it reaches beyond 1, t itself when they are not separated there.
+/// Everything rounds down.
+template <PairKind K, class N>
+ICLOTH_HD N separated_until(const PairMotion<K, N>& pair, Vec3<N> d, double margin, N t) {
+  // Dot product of rounded differences: 4 roundings a term at most; 6, and a floor for underflow.
+  const N reach = detail::absolute(d.x) * pair.size.x + detail::absolute(d.y) * pair.size.y +
+                  detail::absolute(d.z) * pair.size.z;
+  N error = N(6) * kRoundoff<N> * reach + N(1e-290);
+  if (margin > 0) error = error + N(margin * norm(detail::rounded(d)));
+  detail::PositiveSpan<N> span{t};
+  for (int i = 0; i < PairMotion<K, N>::kCount && span.holds; ++i) {
+    span.narrow(dot(d, pair.r0[i]) - error, dot(d, pair.r1[i]) - error);
   }
-  if (x.interior) {
-    out.second = side;
-    out.doubtful = x.w[k] < detail::kNearBorder ||
-                   !(norm2(n) > 1e-8 * norm2(r[1] - r[0]) * norm2(r[2] - r[0]));
-  } else {
-    out.first = side;
-  }
-  return out;
+  return span.result();
 }
 
-/// Closest points of two edges at time t.
-ICLOTH_HD inline ClosestPair closest_pair(const PairMotion<PairKind::ee>& pair, double t) {
-  // With a0 as the origin: a1 = r0 − r1, b0 = r0, b1 = r2.
-  const Vec3d r[4] = {pair.at(t, 0), pair.at(t, 1), pair.at(t, 2), pair.at(t, 3)};
-  const Vec3d e1 = r[0] - r[1], e2 = r[2] - r[0];
-  const SegmentPoints<double> x = closest_points_segments(Vec3d{}, e1, r[0], r[2]);
-  const Vec3d n = detail::towards(cross(e1, e2), r[0]);
-  ClosestPair out{{-(1 - x.s), -x.s, 1 - x.t, x.t}, n, n, true};
-  const Vec3d nearest = r[(x.s > 0.5 ? 1 : 0) + (x.t > 0.5 ? 2 : 0)];
-  const bool inside_a = x.s > 0 && x.s<1, inside_b = x.t> 0 && x.t < 1;
-  if (inside_a && inside_b) {
-    const double border = std::fmin(std::fmin(x.s, 1 - x.s), std::fmin(x.t, 1 - x.t));
-    out.second = detail::orthogonal_to(nearest, norm2(e1) > norm2(e2) ? e1 : e2);
-    out.doubtful = border < detail::kNearBorder || !(norm2(n) > 1e-8 * norm2(e1) * norm2(e2));
-  } else if (inside_a || inside_b) {
-    out.first = detail::orthogonal_to(nearest, inside_a ? e1 : e2);
-  } else {
-    out.first = nearest;
+/// The same for the six directions along the axes; the latest end, and its direction into d. A
+/// difference of two stored numbers has a relative error only, so here the smallest gap counts.
+template <PairKind K, class N>
+ICLOTH_HD N separated_by_axes_until(const PairMotion<K, N>& pair, double margin, N t, Vec3<N>& d) {
+  N best = t;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const N sign = side % 2 == 0 ? N(1) : N(-1);
+    detail::PositiveSpan<N> span{t};
+    for (int i = 0; i < PairMotion<K, N>::kCount && span.holds; ++i) {
+      span.narrow(sign * detail::component(pair.r0[i], axis) - N(margin),
+                  sign * detail::component(pair.r1[i], axis) - N(margin));
+    }
+    if (!(span.result() > best)) continue;
+    best = span.result();
+    d = {axis == 0 ? sign : N(0), axis == 1 ? sign : N(0), axis == 2 ? sign : N(0)};
   }
-  return out;
+  return best;
 }
 
 }  // namespace icloth

@@ -1,0 +1,103 @@
+// A certified lower bound of the first zero of the coplanarity cubic after a given time.
+//
+// Bézier clipping (Sederberg and Nishita, 1990) until the control points fall monotonically, then
+// safeguarded Newton steps. Only comparisons against the error bound of the cubic certify anything;
+// a badly converging step costs time.
+#pragma once
+
+#include "kernels/ccd_cubic.h"
+
+namespace icloth {
+
+namespace detail {
+
+/// Extreme parameters at which the convex hull of the points (i/3, c[i]) meets `level`, c[0] being
+/// above it; first > 1 when all points lie above. The first time that the cubic comes down to the
+/// level, if there is one, lies between.
+template <class T>
+struct HullCut {
+  T first, last;
+};
+template <class T>
+ICLOTH_HD HullCut<T> cut_hull(const T* c, T level) {
+  // The hull's boundary consists of segments between control points, so the extreme crossings are
+  // among those of all pairs above/below.
+  HullCut<T> cut{T(2), T(-1)};
+  for (int i = 1; i < 4; ++i) {
+    if (c[i] > level) continue;
+    for (int j = 0; j < 4; ++j) {
+      if (!(c[j] > level)) continue;
+      const T x = (T(j) + T(i - j) * ((c[j] - level) / (c[j] - c[i]))) / T(3);
+      cut.first = smaller(cut.first, x);
+      cut.last = larger(cut.last, x);
+    }
+  }
+  return cut;
+}
+
+/// For sign·f falling monotonically from above its error at `low` to at most its error at `high`:
+/// a time just before it gets there.
+template <class T>
+ICLOTH_HD T monotone_zero_bound(const Bernstein3<T>& f, T sign, T low, T high) {
+  const T tiny = T(16) * kRoundoff<T>;
+  const auto height = [&](T t) { return sign * f(t) - f.error; };
+  T t = low;
+  for (int iteration = 0; iteration < 60 && high - low > tiny; ++iteration) {
+    const T value = height(t);
+    (value > T(0) ? low : high) = t;
+    const T step = value / (T(3) * sign * f.slope(t));
+    T next = t - step;
+    if (!(next > low && next < high)) next = T(0.5) * (low + high);
+    if (absolute(next - t) < tiny) break;
+    t = next;
+  }
+  // Newton has converged from one side: step back to where the sign is certain.
+  for (T back = tiny; t - back > low; back = T(8) * back) {
+    if (height(t - back) > T(0)) return t - back;
+  }
+  return low;
+}
+
+/// The control points fall by more than their rounding errors: so does the cubic.
+template <class T>
+ICLOTH_HD bool falls(const T* c, T noise) {
+  return c[0] - c[1] > noise && c[1] - c[2] > noise && c[2] - c[3] > noise;
+}
+
+}  // namespace detail
+
+/// A time in [start, first zero of f at or after start]: f is certainly nonzero from `start` up to
+/// it. kNever when f is certainly nonzero on [start,1].
+template <class T>
+ICLOTH_HD T first_zero_bound(const Bernstein3<T>& f, T start) {
+  T t0 = start, t1 = T(1);
+  for (int iteration = 0; iteration < 120; ++iteration) {
+    T c[4];
+    f.restrict_to(t0, t1, c);
+    if (!(detail::absolute(c[0]) > f.error)) return t0;
+    const T sign = c[0] < T(0) ? T(-1) : T(1);
+    for (T& x : c) x = sign * x;
+    if (c[1] > f.error && c[2] > f.error && c[3] > f.error) {
+      if (!(t1 < T(1))) return T(kNever);
+      t0 = t1;  // nothing in this part; go on with the rest
+      t1 = T(1);
+      continue;
+    }
+    if (!(c[3] > f.error) && detail::falls(c, f.error)) {
+      return detail::monotone_zero_bound(f, sign, t0, t1);
+    }
+    const T width = t1 - t0;
+    if (width < T(8) * kRoundoff<T>) return t0;
+    const detail::HullCut<T> cut = detail::cut_hull(c, f.error);
+    // The cut is taken a little wider than computed.
+    const T pad = T(32) * kRoundoff<T>;
+    const T first = detail::larger(cut.first - pad, T(0));
+    const T last = detail::smaller(cut.last + pad, T(1));
+    if (last < T(1)) t1 = t0 + width * last;
+    t0 = t0 + width * first;
+    if (last - first > T(0.6)) t1 = t0 + T(0.5) * (t1 - t0);
+  }
+  return t0;
+}
+
+}  // namespace icloth
