@@ -39,6 +39,7 @@ struct Front {
   N time;
   Vec3<N> last{};     // direction that separated the pair …
   N last_end{};       // … up to this time
+  N w[4]{};           // weights of the closest points at `time`
   bool clear{false};  // a plain crossing in the interior of both primitives
 };
 
@@ -58,6 +59,7 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
     front.time = first_zero_bound(f, front.time);
     if (front.time > N(1)) return;
     const ClosestPair<N> closest = closest_pair(pair, front.time);
+    for (int k = 0; k < 4; ++k) front.w[k] = closest.w[k];
     front.clear = !closest.doubtful && crosses_at(f, front.time);
     if (front.clear) return;
     const N needed = front.time + least_step;
@@ -154,6 +156,7 @@ ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, Front<doubl
   if (fine.time > DoubleDouble(1)) return false;
   front.time = fine.time.hi;
   if (fine.time.lo < 0) front.time *= 1 - 0x1p-52;  // rounds down
+  for (int k = 0; k < 4; ++k) front.w[k] = fine.w[k].hi;
   if (fine.last_end > DoubleDouble(0)) {
     front.last = rounded(fine.last);
     front.last_end = fine.last_end.hi;
@@ -181,9 +184,8 @@ ICLOTH_HD bool elementary_ccd(const CcdQuery<T>& query, double separation, CcdHi
   if constexpr (sizeof(T) == 8) {
     if (!front.clear && !confirm<K>(query, margin, front)) return false;
   }
-  const ClosestPair<double> closest = closest_pair(pair, front.time);
   hit.toi = front.time;
-  for (int k = 0; k < 4; ++k) hit.w[k] = closest.w[k];
+  for (int k = 0; k < 4; ++k) hit.w[k] = front.w[k];
   const Vec3d last = front.last_end > 0.95 * front.time ? normalized(front.last) : Vec3d{};
   hit.normal = contact_normal(pair, volume, f, hit, last);
   return true;
