@@ -1,0 +1,234 @@
+#include "app/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <new>
+
+#include "app/machine.h"
+#include "app/options.h"
+#include "app/verbs/bench.h"
+#include "app/verbs/check.h"
+#include "app/verbs/info.h"
+#include "app/verbs/render.h"
+#include "app/verbs/replay.h"
+#include "app/verbs/run.h"
+#include "app/verbs/view.h"
+#include "sim/assets.h"
+#include "sim/error.h"
+#if __has_include("app/verbs/ccd.h")
+#define ICLOTH_HAS_CCD_VERB
+#include "app/verbs/ccd.h"
+#endif
+
+namespace icloth {
+namespace {
+
+constexpr std::string_view kVerbs[] = {"view",   "run", "render", "bench",
+                                       "replay", "ccd", "check",  "info"};
+
+/// What the parsed verb does; its options live here until then.
+struct Commands {
+  CLI::App app{"icloth: interactive cloth simulation", "icloth"};
+  std::function<int()> chosen;
+
+  SimulationOptions view_simulation, render_simulation;
+  ViewOptions view;
+  RunOptions run;
+  RenderOptions render;
+  BenchOptions bench;
+  ReplayOptions replay;
+  CheckOptions check;
+  std::string ccd_queries, ccd_predictions;
+
+  Commands();
+  CLI::App* add_verb(const char* name, const char* what, std::function<int()> action);
+  void add_view();
+  void add_run();
+  void add_render();
+  void add_bench_and_replay();
+  void add_tests();
+};
+
+CLI::App* Commands::add_verb(const char* name, const char* what, std::function<int()> action) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->callback([this, action = std::move(action)] { chosen = action; });
+  return verb;
+}
+
+void Commands::add_view() {
+  CLI::App* verb = add_verb("view", "the window", [this] {
+#if defined(ICLOTH_HAS_WINDOW)
+    if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
+      throw DeviceError("there is no display; without one use 'icloth run' or 'icloth render'");
+    if (view_simulation.dump_config) {
+      run.simulation = view_simulation;
+      return run_run(run);
+    }
+    view.scene = view_simulation.scene;
+    view.overrides = view_simulation.overrides;
+    view.threads = view_simulation.threads;
+    view.build = choose_build(view_simulation);
+    return run_view(view);
+#else
+    throw DeviceError("this program was built without the window (GLFW, Dear ImGui, OpenGL)");
+    return 3;
+#endif
+  });
+  add_simulation_options(*verb, view_simulation, false);
+  verb->add_option("--record", view.record_file, "save the session as a recording at the end");
+  verb->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
+  verb->add_flag("!--paused", view.play, "start paused");
+  verb->add_flag("--script", view.play_script, "apply the scene's scripted grabs as well");
+}
+
+void Commands::add_run() {
+  CLI::App* verb = add_verb("run", "headless simulation", [this] { return run_run(run); });
+  add_simulation_options(*verb, run.simulation, true);
+  verb->add_option("--out", run.out, "folder of exported frames");
+  verb->add_option("--export", run.exports, "format of the frames: obj")
+      ->check(CLI::IsMember({"obj"}))
+      ->allow_extra_args(false);
+  verb->add_option("--every", run.every, "export each K-th step")->check(CLI::Range(1L, 1000000L));
+  verb->add_option("--stats", run.stats_file, "statistics of every step, FILE.csv or FILE.json");
+  verb->add_option("--input", run.input_file, "recording whose drags are applied");
+  verb->add_option("--record", run.record_file, "save the run as a recording");
+  verb->add_option("--on-failure", run.on_failure, "stop or continue after a refused step")
+      ->check(CLI::IsMember({"stop", "continue"}));
+}
+
+void Commands::add_render() {
+  CLI::App* verb = add_verb("render", "headless pictures and video", [this] {
+#if defined(ICLOTH_HAS_RENDER)
+    const SimulationOptions& common = render_simulation;
+    if (common.dump_config) {
+      run.simulation = common;
+      return run_run(run);
+    }
+    render.scene = common.scene;
+    render.overrides = common.overrides;
+    render.threads = common.threads;
+    render.quiet = common.quiet;
+    render.steps = common.steps;
+    render.time = common.time;
+    render.build = choose_build(common);
+    return run_render(render);
+#else
+    throw DeviceError("this program was built without the renderer (OpenGL, EGL, glad)");
+    return 3;
+#endif
+  });
+  add_simulation_options(*verb, render_simulation, true);
+  verb->add_option("--out", render.out, "FILE.png or FILE.mp4")->capture_default_str();
+  verb->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
+  verb->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
+  verb->add_option("--view", render.view, "what is shown")->capture_default_str();
+  verb->add_option("--quality", render.quality, "draft, interactive or still")
+      ->capture_default_str();
+  verb->add_option("--fps", render.frame_rate, "frames a second of a video")
+      ->check(CLI::Range(1.0, 1000.0));
+  verb->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
+}
+
+void Commands::add_bench_and_replay() {
+  CLI::App* verb =
+      add_verb("bench", "benchmark suites and reports", [this] { return run_bench(bench); });
+  verb->add_option("SUITE", bench.suite, "quick")->capture_default_str();
+  verb->add_option("--out", bench.out, "folder of results.json");
+  verb->add_option("--threads", bench.threads, "threads of the CPU solver")
+      ->check(CLI::Range(1, 4096));
+  verb->add_flag("--quiet", bench.quiet, "no progress line");
+
+  verb = add_verb("replay", "run recorded input again and compare the final state",
+                  [this] { return run_replay(replay); });
+  verb->add_option("RECORDING", replay.recording, "file of --record or of a session")->required();
+  verb->add_option("--threads", replay.threads, "threads of the CPU solver")
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
+  verb->add_flag("--quiet", replay.quiet, "print errors only");
+}
+
+void Commands::add_tests() {
+#if defined(ICLOTH_HAS_CCD_VERB)
+  CLI::App* ccd = add_verb("ccd", "elementary CCD over a file of queries",
+                           [this] { return run_ccd(ccd_queries, ccd_predictions); });
+  ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
+  ccd->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
+#endif
+  CLI::App* verb = add_verb("check", "exact self- and inter-mesh intersection test",
+                            [this] { return run_check(check); });
+  verb->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
+  verb->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
+  add_verb("info", "version, machine, builds, renderer", [] { return run_info(); });
+}
+
+Commands::Commands() {
+  app.set_version_flag("--version", "icloth " + program_version());
+  app.require_subcommand(1);
+  app.footer("Without a verb the scene is opened in a window: icloth [SCENE].");
+  add_view();
+  add_run();
+  add_render();
+  add_bench_and_replay();
+  add_tests();
+}
+
+/// `icloth [view] [SCENE]`: puts the verb in where it was left out.
+void complete_verb(std::vector<std::string>& words) {
+  if (words.empty()) {
+    words = {"view"};
+    return;
+  }
+  const std::string& first = words.front();
+  if (first == "-h" || first == "--help" || first == "--version") return;
+  if (std::ranges::find(kVerbs, first) != std::end(kVerbs)) return;
+  const bool word = !first.starts_with("-") && first.find_first_of("./") == std::string::npos;
+  const std::string scenes = asset_names("scenes") + " ";
+  if (word && scenes.find(" " + first + " ") == std::string::npos &&
+      !std::filesystem::exists(first))
+    throw InputError("'" + first + "' is neither a verb nor a scene, the nearest verb is '" +
+                     std::string(nearest_name(first, kVerbs)) + "' (see icloth --help)");
+  words.insert(words.begin(), "view");
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
+int run_words(std::vector<std::string> words) {
+  Commands commands;
+  complete_verb(words);
+  std::ranges::reverse(words);  // as CLI11 wants them
+  try {
+    commands.app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return commands.app.exit(error);  // --help, --version
+    throw InputError(first_line(error.what()) + " (see icloth --help)");
+  }
+  return commands.chosen();
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  const auto fail = [](int code, const char* what) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "icloth: %s\n", first_line(what).c_str());
+    return code;
+  };
+  try {
+    return run_words({argv + 1, argv + argc});
+  } catch (const InputError& error) {
+    return fail(2, error.what());
+  } catch (const DeviceError& error) {
+    return fail(3, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(2, "there is not enough memory for this input");
+  } catch (const std::exception& error) {
+    return fail(1, (std::string("internal error: ") + error.what()).c_str());
+  }
+}
+
+}  // namespace icloth

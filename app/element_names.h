@@ -1,0 +1,43 @@
+// Names of faces and vertices as users know them: object and number within it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/intersections.h"
+#include "sim/report.h"
+#include "sim/scene.h"
+
+namespace icloth {
+
+/// Numbers elements across objects in scene order, cloths first, and names them again.
+class ElementNames {
+ public:
+  explicit ElementNames(const Scene& scene);
+  /// Objects with their names ("cloth:shirt"), faces and vertices.
+  void add(std::string name, Index vertices, Index faces);
+
+  std::string face(Index global) const;                   ///< "cloth:NAME face 12"
+  std::string vertex(Index global) const;                 ///< "cloth:NAME vertex 7"
+  std::string pair(const IntersectingFaces& pair) const;  ///< "… face a — … face b"
+  std::string pair(const OffendingPair& pair) const;      ///< "… vertex 1 — face of … 2 3 4"
+
+ private:
+  struct Object {
+    std::string name;
+    Index first_vertex, first_face;
+  };
+  const Object& at_face(Index global) const;
+  const Object& at_vertex(Index global) const;
+  std::string vertices(std::span<const Index> globals) const;
+
+  std::vector<Object> objects_;
+  Index vertices_ = 0, faces_ = 0;
+};
+
+/// Prints the start intersections of a scene to stderr, the first ten by name. True when there
+/// are some: nothing may be simulated then.
+bool report_start_intersections(const Scene& scene, bool single_precision);
+
+}  // namespace icloth

@@ -1,0 +1,94 @@
+#include "app/headless.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/element_names.h"
+#include "app/progress.h"
+#include "sim/intersections.h"
+
+namespace icloth {
+namespace {
+
+constexpr std::size_t kShownPairs = 10;
+
+void print_refusal(const Scene& scene, const StepReport& report) {
+  const ElementNames names(scene);
+  std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
+               static_cast<long long>(report.step), report.time,
+               report.finite ? "" : "the state was not finite, ",
+               static_cast<long long>(report.impacts_left));
+  for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
+    std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());
+  if (report.offending.size() > kShownPairs)
+    std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
+}
+
+/// Input of one step: from the recording where there is one, else from the scene's script.
+Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long step,
+                           const Simulator& simulator) {
+  if (!job.input) return {script.events(simulator.time(), simulator.parameters().time_step), {}};
+  const auto index = static_cast<std::size_t>(step);
+  return index < job.input->steps.size() ? job.input->steps[index] : Recording::Step{};
+}
+
+void apply_parameters(Simulator& simulator, const Recording::Step& input) {
+  if (input.parameters.empty()) return;
+  Parameters parameters = simulator.parameters();
+  for (const auto& [name, value] : input.parameters)
+    set_parameter(parameters, *find_parameter(name), value);
+  simulator.set_parameters(parameters);
+}
+
+}  // namespace
+
+std::size_t count_penetrations(const Simulator& simulator) {
+  const Scene& scene = simulator.scene();
+  const Snapshot state = simulator.snapshot();
+  std::vector<Triangle> faces;
+  std::vector<int> group;
+  Index first = 0;
+  const auto append = [&](const TriangleMesh& mesh, int number) {
+    for (const Triangle& t : mesh.faces)
+      faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+    group.resize(faces.size(), number);
+    first += static_cast<Index>(mesh.positions.size());
+  };
+  for (const Cloth& cloth : scene.cloths) append(cloth.mesh, 0);
+  for (const Obstacle& obstacle : scene.obstacles) append(obstacle.mesh, -1);
+  return find_intersections(state.positions, faces, group).size();
+}
+
+HeadlessResult run_headless(const HeadlessJob& job) {
+  HeadlessResult result;
+  result.start_refused = report_start_intersections(*job.scene, job.build != Build::cpu64);
+  if (result.start_refused) return result;
+  const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);
+  ScriptedInput script(*job.scene);
+  if (job.watch) job.watch(*simulator, nullptr);
+
+  Progress progress(job.scene->name, job.steps, job.quiet);
+  for (long step = 0; step < job.steps; ++step) {
+    const Recording::Step input = next_input(job, script, step, *simulator);
+    apply_parameters(*simulator, input);
+    const StepReport report = simulator->step(input.events);
+    if (job.record) job.record->steps.push_back(input);
+    result.statistics.add(report);
+    if (job.watch) job.watch(*simulator, &report);
+    if (!report.accepted) {
+      progress.finish();
+      print_refusal(*job.scene, report);
+      result.refused.push_back(report);
+      if (job.stop_on_failure) break;
+    }
+    progress.update(step + 1);
+  }
+  progress.finish();
+
+  result.penetrations = count_penetrations(*simulator);
+  result.state_hash = simulator->state_hash();
+  if (job.record) job.record->final_hash = result.state_hash;
+  return result;
+}
+
+}  // namespace icloth

@@ -1,0 +1,42 @@
+// Stepping a scene without a window: what run, replay, render and bench share.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "app/run_statistics.h"
+#include "sim/input.h"
+#include "sim/simulator.h"
+
+namespace icloth {
+
+struct HeadlessJob {
+  std::shared_ptr<const Scene> scene;
+  Build build = Build::cpu32;
+  long steps = 0;
+  const Recording* input = nullptr;  ///< replaces the scene's scripted grabs; null: the script
+  Recording* record = nullptr;       ///< its steps and hash are filled; null: nothing is kept
+  bool stop_on_failure = true;
+  bool quiet = false;  ///< no progress line
+  /// Called with the start state (null report) and after every step.
+  std::function<void(const Simulator&, const StepReport*)> watch;
+};
+
+struct HeadlessResult {
+  RunStatistics statistics;
+  std::vector<StepReport> refused;  ///< steps that were not accepted, with their pairs
+  std::size_t penetrations = 0;     ///< pairs of faces that intersect in the final state
+  std::uint64_t state_hash = 0;     ///< of the final state
+  bool start_refused = false;       ///< the start state intersects; nothing was simulated
+
+  bool clean() const { return refused.empty() && penetrations == 0 && !start_refused; }
+};
+
+/// Checks the start state, steps, and checks the final state exactly. Start intersections and
+/// refused steps are printed to stderr.
+HeadlessResult run_headless(const HeadlessJob& job);
+
+/// Pairs of intersecting faces of a simulator's present state.
+std::size_t count_penetrations(const Simulator& simulator);
+
+}  // namespace icloth

@@ -1,0 +1,64 @@
+#include "app/machine.h"
+
+#include <icloth_commit.h>
+#include <sys/resource.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <memory>
+
+namespace icloth {
+
+std::string program_version() { return ICLOTH_VERSION; }
+std::string program_commit() { return ICLOTH_COMMIT; }
+
+std::string compiler_name() {
+#if defined(__clang__)
+  return std::string("clang ") + __clang_version__ + ", " ICLOTH_BUILD_TYPE;
+#else
+  return std::string("g++ ") + __VERSION__ + ", " ICLOTH_BUILD_TYPE;
+#endif
+}
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos)
+      return line.substr(line.find(": ") + 2);
+  return "unknown";
+}
+
+int processor_threads() { return tbb::info::default_concurrency(); }
+
+double memory_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+double peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+double measure_memory_bandwidth() {
+  constexpr std::size_t count = std::size_t{1} << 24;  // 128 MiB an array
+  constexpr std::size_t block = std::size_t{1} << 16;
+  const auto a = std::make_unique_for_overwrite<double[]>(count);
+  const auto b = std::make_unique<double[]>(count), c = std::make_unique<double[]>(count);
+  double best = 0;
+  for (int run = 0; run < 6; ++run) {  // the first one brings in the pages
+    const auto start = std::chrono::steady_clock::now();
+    tbb::parallel_for(std::size_t{0}, count / block, [&](std::size_t k) {
+      for (std::size_t i = k * block; i < (k + 1) * block; ++i) a[i] = b[i] + 3.0 * c[i];
+    });
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    best = std::max(best, 3.0 * sizeof(double) * count / time.count());
+  }
+  return best;
+}
+
+}  // namespace icloth

@@ -1,0 +1,20 @@
+// What results have to name: program, machine, memory.
+#pragma once
+
+#include <string>
+
+namespace icloth {
+
+std::string program_version();  ///< "0.1.0"
+std::string program_commit();   ///< of the source tree, "-dirty" when changed, or "unknown"
+std::string compiler_name();    ///< "g++ 12.2.0, Release"
+std::string processor_name();   ///< as the kernel names it
+int processor_threads();        ///< hardware threads that this process may use
+double memory_bytes();          ///< of the machine
+double peak_memory_bytes();     ///< largest resident size of this process so far
+
+/// Bytes a second that all threads together read and write in a[i] = b[i] + s·c[i], best of a
+/// few runs over arrays that exceed the caches. Takes about half a second.
+double measure_memory_bandwidth();
+
+}  // namespace icloth

@@ -1,0 +1,40 @@
+// Options that every simulating verb has.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/simulator.h"
+
+namespace CLI {
+class App;
+}
+
+namespace icloth {
+
+struct SimulationOptions {
+  std::string scene = "scarf";         ///< built-in name, scene JSON or mesh file
+  std::string device;                  ///< cpu, cuda or cuda:N; empty: cuda where it is usable
+  std::string precision = "f32";       ///< f32 or f64
+  int threads = 0;                     ///< of the CPU builds; 0: all
+  long steps = -1;                     ///< -1: by time
+  double time = -1;                    ///< [s]; -1 (and steps -1): the scene's duration
+  std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
+  bool dump_config = false;            ///< print all parameters and stop
+  bool quiet = false;
+};
+
+/// Adds the options to a verb; values are checked while the command line is read.
+void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required);
+
+/// Build that --device and --precision ask for. Throws InputError (cuda with f64), DeviceError.
+Build choose_build(const SimulationOptions& options);
+
+/// Steps that --steps, --time or the scene's duration ask for, at the scene's time step.
+long step_count(const SimulationOptions& options, const Scene& scene);
+
+/// The options as they would be typed, without the verb: "scarf --device cpu --set mu=500".
+/// `build` replaces --device and --precision, so that the command repeats on other machines.
+std::string command_arguments(const SimulationOptions& options, Build build);
+
+}  // namespace icloth

@@ -1,0 +1,29 @@
+// One line on the terminal that says how far a run is.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace icloth {
+
+/// Shown on stderr when that is a terminal, from the second second on; erased at the end.
+class Progress {
+ public:
+  Progress(std::string what, long total, bool quiet);
+  ~Progress() { finish(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(long done);
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string what_;
+  long total_;
+  bool enabled_, shown_ = false;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+}  // namespace icloth

@@ -1,0 +1,129 @@
+#include "app/run_statistics.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
+
+#include "app/machine.h"
+#include "sim/error.h"
+#include "sim/file_io.h"
+
+namespace icloth {
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+}  // namespace
+
+void RunStatistics::add(const StepReport& report) {
+  reports_.push_back(report);
+  reports_.back().offending = {};
+}
+
+std::vector<double> RunStatistics::values(std::string_view column) const {
+  const auto found = std::ranges::find(report_columns(), column, &ReportColumn::name);
+  std::vector<double> result;
+  if (found == report_columns().end()) return result;
+  result.reserve(reports_.size());
+  for (const StepReport& report : reports_)
+    result.push_back(std::visit([&](auto member) { return static_cast<double>(report.*member); },
+                                found->member));
+  return result;
+}
+
+double RunStatistics::median(std::string_view column) const {
+  std::vector<double> sorted = values(column);
+  if (sorted.empty()) return 0;
+  std::ranges::sort(sorted);
+  const std::size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+double RunStatistics::sum(std::string_view column) const {
+  const std::vector<double> all = values(column);
+  return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+double RunStatistics::mean(std::string_view column) const {
+  return reports_.empty() ? 0 : sum(column) / static_cast<double>(reports_.size());
+}
+
+double RunStatistics::largest(std::string_view column) const {
+  const std::vector<double> all = values(column);
+  return all.empty() ? 0 : *std::ranges::max_element(all);
+}
+
+double RunStatistics::steps_per_second() const {
+  const double ms = median("ms_total");
+  return ms > 0 ? 1000 / ms : 0;
+}
+
+std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_hash) const {
+  std::string text = formatted("%-22s %12s %12s %12s\n", "a step", "median", "mean", "largest");
+  for (const char* name : {"ms_total", "ms_proximity", "ms_implicit", "ms_broad_phase", "ms_ccd",
+                           "ms_impact_zones", "ms_other"})
+    text +=
+        formatted("%-22s %12.3f %12.3f %12.3f\n", name, median(name), mean(name), largest(name));
+  for (const char* name : {"proximity_pairs", "candidate_pairs", "elementary_tests",
+                           "impacts_first", "rounds", "zones", "cg_iterations"})
+    text +=
+        formatted("%-22s %12.0f %12.1f %12.0f\n", name, median(name), mean(name), largest(name));
+  text += formatted("%-22s %12zu\n", "steps", steps());
+  text += formatted("%-22s %12.2f\n", "steps/s (median)", steps_per_second());
+  text += formatted("%-22s %12.0f\n", "impacts resolved", sum("impacts_first"));
+  text += formatted("%-22s %12.0f   retries %.0f\n", "substeps", sum("substeps"), sum("retries"));
+  text += formatted("%-22s %12.1f MB\n", "peak memory", peak_memory_bytes() / 1e6);
+  text += formatted("%-22s %12zu\n", "penetrations left", penetrations);
+  text += formatted("%-22s %016" PRIx64 "\n", "final state", state_hash);
+  return text;
+}
+
+StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
+  if (path_.empty()) return;
+  const std::filesystem::path file(path_);
+  const bool json = file.extension() == ".json";
+  if (!json && file.extension() != ".csv")
+    throw InputError("--stats " + path_ + ": expected a name that ends in .csv or .json");
+  if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
+    throw InputError("--stats " + path_ + ": there is no folder '" + file.parent_path().string() +
+                     "'");
+  if (json) return;
+  csv_.open(path_);
+  for (const ReportColumn& column : report_columns())
+    csv_ << (&column == report_columns().data() ? "" : ",") << column.name;
+  csv_ << '\n' << std::flush;
+  if (!csv_) throw InputError("--stats " + path_ + ": cannot be written");
+}
+
+void StatisticsFile::add(const StepReport& report) {
+  if (!csv_.is_open()) return;
+  for (const ReportColumn& column : report_columns())
+    csv_ << (&column == report_columns().data() ? "" : ",") << report_value(report, column);
+  csv_ << '\n' << std::flush;  // a crash loses no row
+}
+
+void StatisticsFile::finish(const RunStatistics& statistics) {
+  if (csv_.is_open() && !csv_) throw InputError("--stats " + path_ + ": cannot be written");
+  if (path_.empty() || csv_.is_open()) return;
+  std::string text = "[";
+  for (const StepReport& report : statistics.reports()) {
+    text += text.size() > 1 ? ",\n {" : "\n {";
+    for (const ReportColumn& column : report_columns()) {
+      const bool hash = std::holds_alternative<std::uint64_t StepReport::*>(column.member);
+      const std::string quote = hash ? "\"" : "";  // 64 bits do not fit a JSON number everywhere
+      text += (text.back() == '{' ? "\"" : ", \"") + std::string(column.name) + "\": " + quote +
+              report_value(report, column) + quote;
+    }
+    text += "}";
+  }
+  write_file(path_, text + "\n]\n");
+}
+
+}  // namespace icloth

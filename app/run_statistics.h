@@ -1,0 +1,51 @@
+// Statistics of the steps of a run: the table at its end and the files of --stats.
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/report.h"
+
+namespace icloth {
+
+/// Collects the reports of a run.
+class RunStatistics {
+ public:
+  void add(const StepReport& report);
+
+  std::size_t steps() const { return reports_.size(); }
+  const std::vector<StepReport>& reports() const { return reports_; }
+  double median(std::string_view column) const;
+  double mean(std::string_view column) const;
+  double largest(std::string_view column) const;
+  double sum(std::string_view column) const;
+  /// Of the median step; 0 without steps.
+  double steps_per_second() const;
+
+  /// What is printed at the end of a run. `penetrations`: pairs of faces that intersect in the
+  /// final state; `state_hash`: of that state.
+  std::string table(std::size_t penetrations, std::uint64_t state_hash) const;
+
+ private:
+  std::vector<double> values(std::string_view column) const;
+
+  std::vector<StepReport> reports_;  // without the offending pairs
+};
+
+/// File of --stats: CSV is written as the run goes, JSON at the end.
+class StatisticsFile {
+ public:
+  /// `path` ends in .csv or .json; empty: nothing is written. Throws InputError, also when the
+  /// place cannot be written.
+  explicit StatisticsFile(std::string path);
+  void add(const StepReport& report);
+  void finish(const RunStatistics& statistics);
+
+ private:
+  std::string path_;
+  std::ofstream csv_;
+};
+
+}  // namespace icloth

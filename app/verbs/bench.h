@@ -1,0 +1,19 @@
+// icloth bench: benchmark suites.
+#pragma once
+
+#include <string>
+
+namespace icloth {
+
+struct BenchOptions {
+  std::string suite = "quick";
+  std::string out;     ///< folder of results.json; empty: none is written
+  int threads = 0;     ///< of the CPU builds; 0: all
+  bool quiet = false;  ///< no progress line
+};
+
+/// Runs a suite on every build that this machine has and prints a table. Returns 0, or 1 when a run
+/// was refused or left penetrations. Throws InputError.
+int run_bench(const BenchOptions& options);
+
+}  // namespace icloth

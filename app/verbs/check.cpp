@@ -1,0 +1,63 @@
+#include "app/verbs/check.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "app/element_names.h"
+#include "sim/error.h"
+#include "sim/mesh_io.h"
+
+namespace icloth {
+namespace {
+
+/// All files in one list of vertices and faces.
+struct Soup {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> faces;
+  std::vector<int> group;  // −1: obstacle
+  ElementNames names{Scene{}};
+
+  void add(const std::string& path, bool several) {
+    const MeshFile file = read_mesh(path);
+    const auto first = static_cast<Index>(positions.size());
+    const auto& mesh = file.mesh;
+    if (positions.size() + mesh.positions.size() > (1u << 30) ||
+        faces.size() + mesh.faces.size() > (1u << 30))
+      throw InputError(path + ": expected at most 2^30 vertices and faces together");
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.faces)
+      faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+    auto vertices = static_cast<Index>(mesh.positions.size());  // counted with the first group
+    for (const MeshGroup& part : file.groups) {
+      const std::string prefix = several || part.name.empty() ? path : "";
+      const std::string colon = prefix.empty() || part.name.empty() ? "" : ":";
+      names.add(prefix + colon + part.name, std::exchange(vertices, 0), part.face_count);
+      group.resize(group.size() + static_cast<std::size_t>(part.face_count),
+                   part.name.starts_with("obstacle:") ? -1 : 0);
+    }
+  }
+
+  std::size_t faces_without_area() const {
+    return static_cast<std::size_t>(std::ranges::count_if(faces, [&](const Triangle& t) {
+      const auto x = [&](std::size_t k) { return positions[static_cast<std::size_t>(t[k])]; };
+      return norm2(cross(x(1) - x(0), x(2) - x(0))) == 0;
+    }));
+  }
+};
+
+}  // namespace
+
+int run_check(const CheckOptions& options) {
+  Soup soup;
+  for (const std::string& path : options.meshes) soup.add(path, options.meshes.size() > 1);
+  const auto pairs = find_intersections(soup.positions, soup.faces, soup.group);
+  for (std::size_t i = 0; i < std::min(pairs.size(), options.list); ++i)
+    std::printf("%s\n", soup.names.pair(pairs[i]).c_str());
+  if (pairs.size() > options.list) std::printf("… and %zu more\n", pairs.size() - options.list);
+  std::printf("faces %zu, without area (not tested) %zu, intersecting pairs %zu\n",
+              soup.faces.size(), soup.faces_without_area(), pairs.size());
+  return pairs.empty() ? 0 : 1;
+}
+
+}  // namespace icloth

@@ -1,0 +1,43 @@
+#include "app/verbs/replay.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "app/headless.h"
+#include "sim/scene_io.h"
+
+namespace icloth {
+
+int run_replay(const ReplayOptions& options) {
+  const Recording recording = load_recording(options.recording);
+  HeadlessJob job;
+  job.scene = load_scene(recording.scene, recording.overrides);
+  for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
+    if (build_name(build) == recording.build) job.build = build;
+  job.steps = static_cast<long>(recording.steps.size());
+  job.input = &recording;
+  job.stop_on_failure = false;  // the recorded hands saw the same refusals
+  job.quiet = options.quiet;
+
+  set_thread_count(options.threads);
+  StatisticsFile stats(options.stats_file);
+  job.watch = [&](const Simulator&, const StepReport* report) {
+    if (report) stats.add(*report);
+  };
+  const HeadlessResult result = run_headless(job);
+  if (result.start_refused) return 1;
+  stats.finish(result.statistics);
+  if (!options.quiet)
+    std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+  if (result.state_hash != recording.final_hash) {
+    std::fprintf(stderr,
+                 "icloth: %s: final state %016" PRIx64 ", recorded was %016" PRIx64 " (%s)\n",
+                 options.recording.c_str(), result.state_hash, recording.final_hash,
+                 recording.build.c_str());
+    return 1;
+  }
+  if (!options.quiet) std::puts("final state as recorded");
+  return result.clean() ? 0 : 1;
+}
+
+}  // namespace icloth

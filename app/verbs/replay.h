@@ -1,0 +1,19 @@
+// icloth replay: recorded input again, and the state at the end compared.
+#pragma once
+
+#include <string>
+
+namespace icloth {
+
+struct ReplayOptions {
+  std::string recording;
+  std::string stats_file;  ///< .csv or .json; empty: none
+  int threads = 0;         ///< of the CPU builds; 0: all
+  bool quiet = false;
+};
+
+/// Returns 0 when the final state has the recorded hash and every step was accepted, else 1.
+/// Throws InputError, and DeviceError when the recorded build has no device here.
+int run_replay(const ReplayOptions& options);
+
+}  // namespace icloth

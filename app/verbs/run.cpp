@@ -1,0 +1,116 @@
+#include "app/verbs/run.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "app/headless.h"
+#include "sim/error.h"
+#include "sim/mesh_io.h"
+#include "sim/scene_io.h"
+
+namespace icloth {
+namespace {
+
+/// Writes frame_00000.obj, frame_00001.obj … with cloths and obstacles as groups.
+class FrameExport {
+ public:
+  FrameExport(const RunOptions& options, const Scene& scene) : scene_(&scene) {
+    if (!options.out.empty()) folder_ = options.out;
+    every_ = options.every;
+  }
+
+  void write(const Simulator& simulator) {
+    if (folder_.empty() || steps_++ % every_ != 0) return;
+    if (frame_ == 0) make_folder();
+    simulator.positions(positions_);
+    std::vector<NamedMesh> meshes;
+    std::size_t first = 0;
+    const auto append = [&](const std::string& name, const TriangleMesh& mesh) {
+      const std::size_t count = mesh.positions.size();
+      meshes.push_back({name, std::span(positions_).subspan(first, count), mesh.faces});
+      first += count;
+    };
+    for (const Cloth& cloth : scene_->cloths) append("cloth:" + cloth.name, cloth.mesh);
+    for (const Obstacle& obstacle : scene_->obstacles)
+      append("obstacle:" + obstacle.name, obstacle.mesh);
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05ld.obj", frame_++);
+    write_obj((folder_ / name).string(), meshes);
+  }
+
+ private:
+  void make_folder() const {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error)
+      throw InputError("--out " + folder_.string() + ": cannot be made a folder (" +
+                       error.message() + ")");
+  }
+
+  const Scene* scene_;
+  std::filesystem::path folder_;
+  std::vector<Vec3f> positions_;
+  long every_ = 1, steps_ = 0, frame_ = 0;
+};
+
+void check(const RunOptions& options) {
+  if (!options.exports.empty() && options.out.empty())
+    throw InputError("--export " + options.exports.front() + ": expected --out DIR with it");
+  const std::filesystem::path record(options.record_file);
+  if (record.has_parent_path() && !std::filesystem::is_directory(record.parent_path()))
+    throw InputError("--record " + options.record_file + ": there is no folder '" +
+                     record.parent_path().string() + "'");
+}
+
+std::string repeat_command(const RunOptions& options, Build build, std::int64_t steps) {
+  std::string text = "icloth run " + command_arguments(options.simulation, build);
+  if (!options.input_file.empty()) text += " --input " + options.input_file;
+  return text + " --steps " + std::to_string(steps);
+}
+
+}  // namespace
+
+int run_run(const RunOptions& options) {
+  const SimulationOptions& common = options.simulation;
+  check(options);
+  HeadlessJob job;
+  job.scene = load_scene(common.scene, common.overrides);
+  if (common.dump_config) {
+    std::printf("%s\n", dump_parameters(job.scene->parameters).c_str());
+    return 0;
+  }
+  Recording input, record;
+  if (!options.input_file.empty()) {
+    input = load_recording(options.input_file);
+    job.input = &input;
+  }
+  job.build = choose_build(common);
+  const bool whole_input = job.input && common.steps < 0 && common.time < 0;
+  job.steps = whole_input ? static_cast<long>(input.steps.size()) : step_count(common, *job.scene);
+  record.scene = common.scene;
+  record.build = build_name(job.build);
+  record.overrides = common.overrides;
+  if (!options.record_file.empty()) job.record = &record;
+  job.stop_on_failure = options.on_failure == "stop";
+  job.quiet = common.quiet;
+
+  set_thread_count(common.threads);
+  StatisticsFile stats(options.stats_file);
+  FrameExport frames(options, *job.scene);
+  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+    frames.write(simulator);
+    if (report) stats.add(*report);
+  };
+  const HeadlessResult result = run_headless(job);
+  if (result.start_refused) return 1;
+  stats.finish(result.statistics);
+  if (job.record) save_recording(record, options.record_file);
+  if (!common.quiet)
+    std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+  if (!result.refused.empty())
+    std::fprintf(stderr, "icloth: repeat with: %s\n",
+                 repeat_command(options, job.build, result.refused.front().step + 1).c_str());
+  return result.clean() ? 0 : 1;
+}
+
+}  // namespace icloth

@@ -1,0 +1,26 @@
+// icloth run: headless simulation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/options.h"
+
+namespace icloth {
+
+struct RunOptions {
+  SimulationOptions simulation;
+  std::string out;                   ///< folder of exported frames
+  std::vector<std::string> exports;  ///< obj
+  long every = 1;                    ///< export each K-th step
+  std::string stats_file;            ///< .csv or .json; empty: none
+  std::string input_file;            ///< recording whose drags are applied; empty: the script
+  std::string record_file;           ///< the run is saved here; empty: not
+  std::string on_failure = "stop";   ///< stop or continue
+};
+
+/// Simulates, exports, prints the statistics. Returns 0, or 1 when the start state intersects, a
+/// step was refused or penetrations are left. Throws InputError, DeviceError.
+int run_run(const RunOptions& options);
+
+}  // namespace icloth
