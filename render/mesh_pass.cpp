@@ -14,7 +14,7 @@ struct Tint {
 
 // Dyed fabrics, each clear against the others; the back of a cloth is paler.
 constexpr Tint kFabrics[] = {
-    {{0.42f, 0.045f, 0.06f}, {0.52f, 0.17f, 0.15f}},  // madder
+    {{0.40f, 0.035f, 0.05f}, {0.50f, 0.15f, 0.13f}},  // madder
     {{0.035f, 0.11f, 0.27f}, {0.14f, 0.22f, 0.36f}},  // indigo
     {{0.62f, 0.36f, 0.06f}, {0.66f, 0.47f, 0.20f}},   // weld
     {{0.06f, 0.20f, 0.13f}, {0.16f, 0.30f, 0.23f}},   // fir
@@ -23,7 +23,7 @@ constexpr Tint kFabrics[] = {
     {{0.60f, 0.53f, 0.44f}, {0.64f, 0.59f, 0.53f}},   // linen
     {{0.55f, 0.22f, 0.13f}, {0.60f, 0.34f, 0.26f}},   // terracotta
 };
-constexpr Vec3f kMannequin{0.56f, 0.52f, 0.47f};
+constexpr Vec3f kMannequin{0.68f, 0.63f, 0.57f};
 
 template <class T>
 GLuint constant_buffer(const std::vector<T>& data) {
@@ -41,6 +41,7 @@ GLuint constant_buffer(const std::vector<T>& data) {
 MeshPass::MeshPass(const World& world, unsigned positions_buffer, unsigned normals_buffer)
     : world_(world),
       mesh_("mesh.vert.glsl", "mesh.frag.glsl"),
+      draft_("mesh.vert.glsl", "mesh.frag.glsl", true),
       depth_("shadow.vert.glsl", ""),
       positions_(positions_buffer),
       normals_(normals_buffer) {
@@ -75,8 +76,9 @@ void MeshPass::upload_constants() {
   threads_ = constant_buffer(threads);
 }
 
-void MeshPass::draw() const {
-  mesh_.use();
+void MeshPass::draw(bool draft) const {
+  const ShaderProgram& program = draft ? draft_ : mesh_;
+  program.use();
   glBindVertexArray(empty_array_);
   const GLuint buffers[] = {positions_, normals_, faces_, inverses_, threads_};
   glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, 5, buffers);
@@ -84,9 +86,9 @@ void MeshPass::draw() const {
   for (const WorldObject& object : world_.objects) {
     const Tint tint =
         object.cloth ? kFabrics[fabric++ % std::size(kFabrics)] : Tint{kMannequin, kMannequin};
-    mesh_.set("is_fabric", object.cloth ? 1 : 0);
-    mesh_.set("front_colour", tint.front);
-    mesh_.set("back_colour", tint.back);
+    program.set("is_fabric", object.cloth ? 1 : 0);
+    program.set("front_colour", tint.front);
+    program.set("back_colour", tint.back);
     glDrawArrays(GL_TRIANGLES, 3 * object.first_face, 3 * object.face_count);
   }
 }

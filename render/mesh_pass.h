@@ -16,7 +16,7 @@ class MeshPass {
   MeshPass& operator=(const MeshPass&) = delete;
 
   /// All objects, lit by the studio's uniform block, into the bound framebuffer.
-  void draw() const;
+  void draw(bool draft) const;
   /// Their depth as the light sees it. `matrix`: world to clip space of the light.
   void draw_depth(const Matrix4& matrix) const;
 
@@ -24,7 +24,7 @@ class MeshPass {
   void upload_constants();
 
   const World& world_;
-  ShaderProgram mesh_, depth_;
+  ShaderProgram mesh_, draft_, depth_;
   unsigned positions_, normals_;
   unsigned faces_ = 0, inverses_ = 0, threads_ = 0;
   unsigned vertex_array_ = 0, empty_array_ = 0;

@@ -20,6 +20,7 @@ namespace icloth {
 
 namespace {
 
+constexpr int kGroundCorners = 64;  // as in ground.vert.glsl
 constexpr std::string_view kViewNames[] = {"shaded", "wireframe", "strain"};
 
 /// What a quality costs.
@@ -78,7 +79,8 @@ struct Renderer::Parts {
   void upload(const Frame& frame, const Camera& camera, int width, int height);
   void light(const Frame& frame, const Camera& camera, const LightSample& sample);
   void draw_depth(Target& map, const Matrix4& matrix) const;
-  void draw_sample() const;
+  void draw_sample(bool floor) const;
+  void draw_ground() const;
   void draw_overlay() const;
   void add_sample(int number) const;
   void finish(int width, int height, GLuint target) const;
@@ -93,7 +95,7 @@ struct Renderer::Parts {
 
   SharedVertices vertices;
   MeshPass meshes;
-  ShaderProgram backdrop, overlay, add, resolve;
+  ShaderProgram backdrop, ground_disc, draft_ground_disc, overlay, add, resolve;
   Target key_map{Target::Kind::shadow}, dome_map{Target::Kind::shadow};
   Target sample{Target::Kind::sample}, sum{Target::Kind::sum}, bytes{Target::Kind::bytes};
   GLuint studio = 0, overlay_buffer = 0, overlay_array = 0, empty_array = 0;
@@ -104,6 +106,8 @@ Renderer::Parts::Parts(const World& the_world)
       vertices(the_world),
       meshes(the_world, vertices.positions_buffer(), vertices.normals_buffer()),
       backdrop("screen.vert.glsl", "backdrop.frag.glsl"),
+      ground_disc("ground.vert.glsl", "ground.frag.glsl"),
+      draft_ground_disc("ground.vert.glsl", "ground.frag.glsl", true),
       overlay("overlay.vert.glsl", "overlay.frag.glsl"),
       add("screen.vert.glsl", "add.frag.glsl"),
       resolve("screen.vert.glsl", "resolve.frag.glsl") {
@@ -186,15 +190,27 @@ void Renderer::Parts::draw_depth(Target& map, const Matrix4& matrix) const {
   glDisable(GL_DEPTH_CLAMP);
 }
 
-void Renderer::Parts::draw_sample() const {
+void Renderer::Parts::draw_sample(bool floor) const {
   sample.bind();
   glClear(GL_DEPTH_BUFFER_BIT);
-  glDisable(GL_DEPTH_TEST);
-  cover(backdrop);
   glEnable(GL_DEPTH_TEST);
-  meshes.draw();
+  meshes.draw(quality == Quality::draft);
+  cover(backdrop);  // lies at the far plane: only where no mesh is
+  if (floor) draw_ground();
   if (overlay_count > 0) draw_overlay();
   glDisable(GL_DEPTH_TEST);
+}
+
+// Multiplies what is behind it, and hides nothing: cloth that falls below the floor stays visible.
+void Renderer::Parts::draw_ground() const {
+  (quality == Quality::draft ? draft_ground_disc : ground_disc).use();
+  glBindVertexArray(empty_array);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ZERO, GL_SRC_COLOR);
+  glDrawArrays(GL_TRIANGLE_FAN, 0, kGroundCorners + 2);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
 }
 
 void Renderer::Parts::draw_overlay() const {
@@ -262,7 +278,7 @@ void Renderer::draw(const Frame& frame, const Camera& camera, int width, int hei
   const int samples = parts_->settings.samples;
   for (int i = 0; i < samples; ++i) {
     parts_->light(frame, camera, light_sample(i, samples));
-    parts_->draw_sample();
+    parts_->draw_sample(camera.eye().y > parts_->ground);
     if (samples > 1) parts_->add_sample(i);
   }
   parts_->finish(width, height, target_framebuffer);

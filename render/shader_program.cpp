@@ -12,8 +12,10 @@ namespace {
 
 constexpr GLsizei kLogLength = 2000;
 
-GLuint compile(GLenum stage, std::string_view name) {
-  std::string source = "#version 450 core\n" + std::string(embedded_shader("lights.glsl"));
+GLuint compile(GLenum stage, std::string_view name, bool draft) {
+  std::string source = "#version 450 core\n";
+  if (draft) source += "#define DRAFT\n";
+  source += embedded_shader("lights.glsl");
   if (stage == GL_FRAGMENT_SHADER) source += embedded_shader("shadow_lookup.glsl");
   source += "#line 1\n" + std::string(embedded_shader(name));
   const GLuint shader = glCreateShader(stage);
@@ -31,9 +33,9 @@ GLuint compile(GLenum stage, std::string_view name) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(std::string_view vertex, std::string_view fragment) {
-  const GLuint first = compile(GL_VERTEX_SHADER, vertex);
-  const GLuint second = fragment.empty() ? 0 : compile(GL_FRAGMENT_SHADER, fragment);
+ShaderProgram::ShaderProgram(std::string_view vertex, std::string_view fragment, bool draft) {
+  const GLuint first = compile(GL_VERTEX_SHADER, vertex, draft);
+  const GLuint second = fragment.empty() ? 0 : compile(GL_FRAGMENT_SHADER, fragment, draft);
   program_ = glCreateProgram();
   glAttachShader(program_, first);
   if (second) glAttachShader(program_, second);

@@ -14,9 +14,9 @@ std::string_view embedded_shader(std::string_view name);
 class ShaderProgram {
  public:
   /// Both shaders get "#version 450 core" and lights.glsl put before them, the fragment shader
-  /// shadow_lookup.glsl too. An empty fragment name: depth only. Throws DeviceError with the
-  /// compiler's message.
-  ShaderProgram(std::string_view vertex, std::string_view fragment);
+  /// shadow_lookup.glsl too. An empty fragment name: depth only. `draft` defines DRAFT, which
+  /// leaves out what software rendering is slow at. Throws DeviceError with the compiler's message.
+  ShaderProgram(std::string_view vertex, std::string_view fragment, bool draft = false);
   ~ShaderProgram();
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;

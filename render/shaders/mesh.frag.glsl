@@ -20,9 +20,13 @@ float wrapped(float facing, float wrap) {
 // Sheen of short fibres: Estevez and Kulla 2017 ("Production friendly microfacet sheen"), with the
 // visibility of Neubelt and Pettineo 2013.
 float sheen(float n_h, float n_l, float n_v) {
+#ifdef DRAFT
+  float d = (1.0 - n_h * n_h) * (4.2 / (2.0 * kPi));
+#else
   const float inverse_roughness = 1.0 / 0.45;
   float d = (2.0 + inverse_roughness) * pow(max(1e-4, 1.0 - n_h * n_h), 0.5 * inverse_roughness) /
             (2.0 * kPi);
+#endif
   return d / (4.0 * (n_l + n_v - n_l * n_v) + 1e-3);
 }
 
@@ -49,7 +53,7 @@ float weave() {
 }
 
 vec3 fabric(vec3 p, vec3 n, vec3 v, vec3 albedo) {
-  const float kWrap = 0.22;
+  const float kWrap = 0.16;
   float n_l = dot(n, key.xyz), n_v = max(dot(n, v), 0.02);
   float lit = key_light(p, n);
   vec3 diffuse = kKeyColour * lit * wrapped(n_l, kWrap);
@@ -58,9 +62,9 @@ vec3 fabric(vec3 p, vec3 n, vec3 v, vec3 albedo) {
   vec3 around = sky_light(p, n) + kFloorBounce * (0.5 - 0.5 * n.y) + kFillColour * n_v;
   vec3 h = normalize(key.xyz + v);
   float n_l_up = max(n_l, 0.0);
-  vec3 fibre = mix(vec3(0.8), albedo, 0.55) *
-               (kKeyColour * lit * 1.1 * n_l_up * sheen(max(dot(n, h), 0.0), n_l_up, n_v) +
-                around * 0.35 * pow(1.0 - n_v, 3.0));
+  vec3 fibre = mix(vec3(0.7), albedo, 0.65) *
+               (kKeyColour * lit * 0.8 * n_l_up * sheen(max(dot(n, h), 0.0), n_l_up, n_v) +
+                around * 0.35 * (1.0 - n_v) * (1.0 - n_v) * (1.0 - n_v));
   return albedo * (diffuse + through + around) + fibre;
 }
 
@@ -96,7 +100,9 @@ void main() {
   vec3 albedo = is_fabric != 0 && !gl_FrontFacing ? back_colour : front_colour;
   if (is_fabric != 0) {
     if (view == kViewStrain) albedo = scale_colour(v_strain / options.y);
+#ifndef DRAFT
     else albedo *= weave();
+#endif
     if (view == kViewWireframe) albedo = mix(albedo, 0.12 * albedo, edge_line());
     colour = vec4(fabric(v_position, n, v, albedo), 1);
   } else {

@@ -8,13 +8,16 @@ out vec4 colour;
 // Colours stay what they are up to the shoulder; only highlights are pressed together.
 vec3 roll_off(vec3 x) {
   const float kShoulder = 0.7;
-  vec3 over = max(x - kShoulder, 0.0) / (1.0 - kShoulder);
-  return min(x, kShoulder) + (1.0 - kShoulder) * (1.0 - exp(-over));
+  vec3 over = max(x - kShoulder, 0.0);
+  return min(x, kShoulder) + over * (1.0 - kShoulder) / (1.0 - kShoulder + over);
 }
 
+// sRGB's curve fitted with roots, within 0.1/255: a power costs more, and rounds differently on
+// every processor.
 vec3 srgb(vec3 x) {
-  return mix(12.92 * x, 1.055 * pow(max(x, 1e-6), vec3(1.0 / 2.4)) - 0.055,
-             greaterThan(x, vec3(0.0031308)));
+  vec3 root = sqrt(x);
+  vec3 curve = -0.07690 + 0.83374 * root + 0.29812 * sqrt(root) - 0.05531 * x;
+  return mix(12.92 * x, curve, greaterThan(x, vec3(0.0031308)));
 }
 
 void main() {
