@@ -53,11 +53,11 @@ std::string gl_info() {
     const std::unique_ptr<GlContext> context = make_egl_context();
     std::string reason;
     const bool interop = SharedVertices::interop_available(&reason);
-    return "OpenGL: " + gl_renderer() + "\nOpenGL context: " + context->origin() +
-           "\nvertices reach the GPU by: " + (interop ? "CUDA-OpenGL interop" : "host copy") +
-           " (" + reason + ")\n";
+    return "renderer      " + gl_renderer() + "\n              " + context->origin() +
+           "\nvertices      " + (interop ? "CUDA-OpenGL interop" : "host copy") + " (" + reason +
+           ")\n";
   } catch (const DeviceError& error) {
-    return std::string("OpenGL: none (") + error.what() + ")\n";
+    return std::string("renderer      none: ") + error.what() + "\n";
   }
 }
 

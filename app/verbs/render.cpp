@@ -1,0 +1,182 @@
+#include "app/verbs/render.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "app/camera_json.h"
+#include "app/headless.h"
+#include "app/options.h"
+#include "render/gl_context_egl.h"
+#include "render/renderer.h"
+#include "sim/error.h"
+#include "sim/intersections.h"
+#include "sim/scene_io.h"
+
+namespace icloth {
+namespace {
+
+struct Size {
+  int width = 0, height = 0;
+};
+
+/// "WIDTHxHEIGHT", each 16 … 16384 pixels.
+Size parse_size(const std::string& text) {
+  Size size;
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.width);
+  const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = cross ? std::from_chars(width.ptr + 1, end, size.height) : width;
+  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 16384; };
+  if (!cross || height.ec != std::errc() || height.ptr != end || !fits(size.width) ||
+      !fits(size.height)) {
+    throw InputError("--size " + text + ": expected WIDTHxHEIGHT, both from 16 to 16384 pixels");
+  }
+  return size;
+}
+
+Quality parse_quality(const std::string& name) {
+  if (name == "draft") return Quality::draft;
+  if (name == "interactive") return Quality::interactive;
+  if (name == "still") return Quality::still;
+  throw InputError("--quality " + name + ": expected draft, interactive or still");
+}
+
+void check_out(const std::string& out) {
+  const std::filesystem::path path(out);
+  if (path.extension() == ".mp4")
+    throw InputError("--out " + out + ": videos are not written yet, expected FILE.png");
+  if (path.extension() != ".png") throw InputError("--out " + out + ": expected FILE.png");
+  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
+    throw InputError("--out " + out + ": there is no folder '" + path.parent_path().string() + "'");
+}
+
+Camera camera_from_file(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError("--camera " + path + ": cannot be read, expected a JSON file");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const auto pose = camera_from_json(text.str());
+  if (!pose) {
+    throw InputError("--camera " + path +
+                     ": no camera, expected an object with 'eye' and 'target' "
+                     "of three numbers each");
+  }
+  return Camera(*pose);
+}
+
+/// The whole start state from the front, slightly from above.
+Camera camera_on_everything(const World& world, double aspect) {
+  Camera camera(CameraPose{"", {0.25, 0.22, 1}, {0, 0, 0}, {0, 1, 0}, 32});
+  Vec3d low = world.position.front(), high = low;
+  for (const Vec3d p : world.position) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  camera.frame_box(low, high, aspect);
+  return camera;
+}
+
+Camera choose_camera(const RenderOptions& options, const Scene& scene, const World& world,
+                     double aspect) {
+  if (options.camera.ends_with(".json")) return camera_from_file(options.camera);
+  std::string names;
+  for (const CameraPose& pose : scene.cameras) {
+    if (options.camera.empty() || pose.name == options.camera) return Camera(pose);
+    names += (names.empty() ? "'" : ", '") + pose.name + "'";
+  }
+  if (options.camera.empty()) return camera_on_everything(world, aspect);
+  throw InputError("--camera " + options.camera + ": not in the scene, expected " +
+                   (names.empty() ? "FILE.json" : names + " or FILE.json"));
+}
+
+/// Faces that a refused step could not bring apart: both elements of every pair, seen as the faces
+/// that hold a whole element.
+std::vector<Index> offending_faces(const World& world, const StepReport& report) {
+  std::vector<std::vector<Index>> elements;
+  for (const OffendingPair& pair : report.offending) {
+    const auto& v = pair.vertices;
+    const std::size_t split = pair.edge_edge ? 2 : 1;
+    elements.emplace_back(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(split));
+    elements.emplace_back(v.begin() + static_cast<std::ptrdiff_t>(split), v.end());
+  }
+  std::vector<Index> faces;
+  for (Index f = 0; f < world.faces && !elements.empty(); ++f) {
+    const Triangle& t = world.face[static_cast<std::size_t>(f)];
+    const bool holds = std::any_of(elements.begin(), elements.end(), [&](const auto& element) {
+      return std::all_of(element.begin(), element.end(),
+                         [&](Index v) { return std::find(t.begin(), t.end(), v) != t.end(); });
+    });
+    if (holds) faces.push_back(f);
+  }
+  return faces;
+}
+
+/// What the picture shows: the last state that was reached.
+struct Shown {
+  std::vector<Vec3f> positions;
+  std::vector<HandleState> handles;
+  std::vector<Index> marked_faces;
+};
+
+void mark_start_intersections(const Scene& scene, bool single_precision, const World& world,
+                              Shown& shown) {
+  for (const Vec3d p : world.position) shown.positions.push_back(convert<float>(p));
+  for (const IntersectingFaces& pair : find_start_intersections(scene, single_precision)) {
+    shown.marked_faces.push_back(pair.a);
+    shown.marked_faces.push_back(pair.b);
+  }
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+  const Size size = parse_size(options.size);
+  const ViewMode view = parse_view_mode(options.view);
+  const Quality quality = parse_quality(options.quality);
+  check_out(options.out);
+
+  HeadlessJob job;
+  job.scene = load_scene(options.scene, options.overrides);
+  const World world = make_world(*job.scene);
+  const Camera camera =
+      choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);
+  const std::unique_ptr<GlContext> context = make_egl_context();  // before the long part
+  Renderer renderer(world);
+  renderer.set_quality(quality);
+
+  SimulationOptions length;
+  length.steps = options.steps;
+  length.time = options.time;
+  job.steps = step_count(length, *job.scene);
+  job.build = options.build;
+  job.quiet = options.quiet;
+  set_thread_count(options.threads);
+  StatisticsFile stats(options.stats_file);
+  Shown shown;
+  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+    if (report) stats.add(*report);
+    if (report && !report->accepted) shown.marked_faces = offending_faces(world, *report);
+    if (simulator.step_index() < job.steps && (!report || report->accepted)) return;
+    simulator.positions(shown.positions);
+    shown.handles = simulator.handles();
+  };
+  const HeadlessResult result = run_headless(job);
+  stats.finish(result.statistics);
+  if (result.start_refused)
+    mark_start_intersections(*job.scene, options.build != Build::cpu64, world, shown);
+
+  Frame frame;
+  frame.positions = shown.positions;
+  frame.handles = shown.handles;
+  frame.marked_faces = shown.marked_faces;
+  frame.view = view;
+  write_png(options.out, renderer.picture(frame, camera, size.width, size.height));
+  if (!options.quiet) std::printf("%s\n", options.out.c_str());
+  return result.clean() ? 0 : 1;
+}
+
+}  // namespace icloth
