@@ -7,6 +7,7 @@
 #include <map>
 
 #include "sim/error.h"
+#include "sim/file_io.h"
 #include "sim/mesh_io.h"
 
 #if defined(ICLOTH_HAS_ASSIMP)
@@ -129,7 +130,7 @@ TriangleMesh read_with_assimp(const std::string& path) {
 #else
 
 TriangleMesh read_with_assimp(const std::string& path) {
-  throw InputError(path + ": value '" + std::filesystem::path(path).extension().string() +
+  throw InputError(path + ": value '" + lower_extension(path) +
                    "', expected .obj or .ply: this program was built without assimp");
 }
 
@@ -138,9 +139,7 @@ TriangleMesh read_with_assimp(const std::string& path) {
 }  // namespace
 
 TriangleMesh read_body(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   if (extension == ".obj" || extension == ".ply") return read_mesh(path).mesh;
   return read_with_assimp(path);
 }

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -41,6 +43,13 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   contents.resize(std::fread(contents.data(), 1, contents.size(), file.get()));
   if (std::ferror(file.get())) fail(path, "cannot be read");
   return contents;
+}
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 void write_file(const std::string& path, std::string_view contents) {

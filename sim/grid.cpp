@@ -16,7 +16,8 @@ struct Resolution {
 Resolution choose_resolution(const GridShape& shape) {
   const double wanted = std::max<double>(shape.triangles, 2);
   const double edge = std::sqrt(shape.width * shape.height / wanted * 4 / std::numbers::sqrt3);
-  const double rows = std::max(1.0, std::round(shape.height / (edge * std::numbers::sqrt3 / 2)));
+  const double best = std::round(shape.height / (edge * std::numbers::sqrt3 / 2));
+  const double rows = std::clamp(best, 1.0, std::max(1.0, std::round(wanted / 3)));
   const double columns = std::max(1.0, std::round((wanted / rows - 1) / 2));
   return {static_cast<Index>(columns), static_cast<Index>(rows)};
 }

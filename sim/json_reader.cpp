@@ -13,7 +13,12 @@ namespace {
 constexpr std::uint64_t kMaxBytes = 256u << 20;
 constexpr std::size_t kMaxShown = 60;
 
+/// Short text of a value. Nested ones are not written out: they may be deep.
 std::string shown(const nlohmann::json& json) {
+  const auto is_nested = [](const nlohmann::json& e) { return e.is_structured(); };
+  if (json.is_object()) return "{…}";
+  if (json.is_array() && (json.size() > 8 || std::ranges::any_of(json, is_nested)))
+    return "[… " + std::to_string(json.size()) + " elements]";
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "…";
   return text;

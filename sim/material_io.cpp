@@ -83,8 +83,8 @@ Material load(const std::string& name, const std::string& folder, int depth) {
       is_file ? find_asset(name, folder) : assets_folder() + "/materials/" + name + ".json";
   std::error_code error;
   if (!is_file && !std::filesystem::exists(path, error))
-    throw InputError("material '" + name + "' is not known, expected a .json file or one of" +
-                     asset_names("materials"));
+    throw InputError("material '" + name +
+                     "' is not known, expected a .json file or one of:" + asset_names("materials"));
   return parse(read_json(path), path, std::filesystem::path(path).parent_path(), depth);
 }
 

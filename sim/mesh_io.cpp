@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 
 #include "sim/error.h"
 #include "sim/file_io.h"
@@ -10,13 +9,6 @@
 
 namespace icloth {
 namespace {
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// 9 significant digits bring every float back; no locale is involved.
 void append_number(std::string& text, float value) {
@@ -47,7 +39,7 @@ double flatness(const TriangleMesh& mesh, const Triangle& face) {
 }  // namespace
 
 MeshFile read_mesh(const std::string& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension != ".obj" && extension != ".ply")
     throw InputError(path + ": value '" + extension + "', expected the extension .obj or .ply");
   const std::string text = read_file(path);

@@ -4,10 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <numbers>
 
 #include "sim/assets.h"
 #include "sim/error.h"
+#include "sim/file_io.h"
 #include "sim/material_io.h"
 #include "sim/mesh_io.h"
 #include "sim/scene_json.h"
@@ -99,7 +100,7 @@ CameraPose framing_camera(const std::vector<Vec3d>& points) {
   CameraPose camera;
   const double radius = std::max(0.5 * norm(high - low), 1e-3);
   camera.target = 0.5 * (low + high);
-  const double distance = 1.15 * radius / std::sin(camera.fov / 2 * 3.14159265358979 / 180);
+  const double distance = 1.15 * radius / std::sin(camera.fov * std::numbers::pi / 360);
   camera.eye = camera.target + distance * normalized(Vec3d{0.35, 0.3, 1});
   return camera;
 }
@@ -121,9 +122,7 @@ Scene scene_of_mesh(const std::string& path) {
 }
 
 bool is_mesh_name(const std::string& argument) {
-  std::string extension = fs::path(argument).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(argument);
   return extension == ".obj" || extension == ".ply";
 }
 
@@ -133,9 +132,9 @@ std::string scene_path(const std::string& argument) {
   std::string path = assets_folder() + "/scenes/" + argument + ".json";
   std::error_code error;
   if (!fs::exists(path, error))
-    throw InputError("scene '" + argument +
-                     "' is not known, expected a .json, .obj or .ply file or one of" +
-                     asset_names("scenes"));
+    throw InputError(
+        "scene '" + argument +
+        "' is not known, expected a .json, .obj or .ply file or one of:" + asset_names("scenes"));
   return path;
 }
 

@@ -91,11 +91,15 @@ Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths)
   value.refuse("the name or number of a cloth of the scene");
 }
 
-/// Objects are told apart by name in panels and exported files.
+/// Objects are told apart by name in panels and exported files, where a name is one word.
 template <class Object>
 void check_name(const std::string& where, const Object& object, std::set<std::string>& names) {
-  if (!names.insert(object.name).second)
-    throw InputError(where + ".name: value \"" + object.name + "\", expected a name used once");
+  const bool is_word =
+      !object.name.empty() &&
+      std::ranges::all_of(object.name, [](unsigned char c) { return c > ' ' && c != 127; });
+  if (!is_word || !names.insert(object.name).second)
+    throw InputError(where + ".name: value \"" + object.name +
+                     "\", expected one word that no other such object has");
 }
 
 void parse_settings(JsonObject& object, Scene& scene) {
@@ -111,11 +115,15 @@ void parse_settings(JsonObject& object, Scene& scene) {
 
 }  // namespace
 
+void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead) {
+  if (object.has(key)) object[key].refuse("no such key, it is not supported yet: " + instead);
+}
+
 void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters) {
   JsonObject object(value);
   for (const auto& [key, member] : value.json().items()) {
     const std::string name = group + key;
-    if (member.is_object()) {
+    if (member.is_object() && group.empty()) {
       parse_parameters(object[key], name + ".", parameters);
     } else {
       set_from_json(parameters, name, object[key]);
@@ -178,6 +186,10 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
 
   std::vector<LoadedCloth> cloths;
   std::set<std::string> cloth_names, obstacle_names;
+  const double triangles = total_grid_triangles(json) * folder.triangle_scale;
+  if (triangles > kMaxTriangles)
+    throw InputError(source + ": cloths: value " + std::to_string(triangles) +
+                     " triangles, expected at most " + std::to_string(kMaxTriangles));
   for (const JsonValue& item : object.required("cloths").items()) {
     cloths.push_back(parse_cloth(item, folder, cloths.size()));
     check_name(item.where(), cloths.back().cloth, cloth_names);
@@ -194,7 +206,9 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   if (object.has("cameras"))
     for (const JsonValue& item : object["cameras"].items())
       scene.cameras.push_back(parse_camera(item));
+  refuse_feature(object, "light", "the picture has its own");
   object.finish();
+  if (cloths.empty()) object["cloths"].refuse("at least one cloth");
   for (LoadedCloth& loaded : cloths) scene.cloths.push_back(std::move(loaded.cloth));
   return scene;
 }

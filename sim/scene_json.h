@@ -31,13 +31,21 @@ struct SceneFolder {
   double triangle_scale = 1;  ///< factor on the triangles of every grid
 };
 
-inline constexpr Index kMaxTriangles = 50'000'000;
+inline constexpr Index kMaxTriangles = 20'000'000;  ///< of all cloths
 
 /// {"translate": [3], "rotate": [3 degrees, about x, then y, then z] or {"axis", "angle"}, "scale"}
 Placement parse_transform(JsonValue value);
 /// Rotation vector [rad] from degrees about x, y, z in turn, or from {"axis": [3], "angle":
 /// degrees}.
 Vec3d parse_rotation(JsonValue value);
+
+/// Grid of about `triangles` triangles from {"size", "orientation", "bend"}.
+GridShape parse_grid(JsonValue value, double triangles);
+/// Body from {"sphere" | "capsule" | "box" | "plane" | "funnel": {…}}.
+TriangleMesh parse_body_shape(JsonValue value);
+
+/// Refuses a key of the format that this version does not act on.
+void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead);
 
 /// Sum of the wanted triangles of all grids; ill-formed entries count as none.
 double total_grid_triangles(const nlohmann::json& scene);

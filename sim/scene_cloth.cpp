@@ -1,0 +1,159 @@
+// Cloths of a scene file.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/assets.h"
+#include "sim/material_io.h"
+#include "sim/mesh_io.h"
+#include "sim/scene_json.h"
+
+namespace icloth {
+namespace {
+
+constexpr Index kDefaultTriangles = 2000;
+constexpr int kMaxSubdivisions = 6;
+
+/// Texture coordinates are no material coordinates: kept only where they have the rest shape's
+/// size.
+bool is_material_space(const std::vector<std::array<Vec2d, 3>>& uv, const std::vector<Vec3d>& rest,
+                       const std::vector<Triangle>& faces) {
+  double uv_area = 0, rest_area = 0;
+  for (std::size_t f = 0; f < uv.size(); ++f) {
+    const auto at = [&](std::size_t c) { return rest[static_cast<std::size_t>(faces[f][c])]; };
+    const Vec2d a = uv[f][1] - uv[f][0], b = uv[f][2] - uv[f][0];
+    const double area = (a.x * b.y - a.y * b.x) / 2;
+    const double real = norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
+    if (area < 0.5 * real || area > 2 * real) return false;
+    uv_area += area;
+    rest_area += real;
+  }
+  return std::abs(uv_area - rest_area) < 0.1 * rest_area;
+}
+
+void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, Cloth& cloth) {
+  const JsonValue name = object["mesh"];
+  cloth.mesh = read_mesh(find_asset(name.text(), folder.path)).mesh;
+  if (object.has("triangles"))
+    object["triangles"].refuse(
+        "no such key: only grids choose their triangles (see \"subdivide\")");
+  cloth.rest = cloth.mesh.positions;
+  if (object.has("rest")) {
+    const TriangleMesh rest = read_mesh(find_asset(object["rest"].text(), folder.path)).mesh;
+    if (rest.positions.size() != cloth.mesh.positions.size() || rest.faces != cloth.mesh.faces)
+      object["rest"].refuse("a mesh with the same vertices and faces as \"mesh\"");
+    cloth.rest = rest.positions;
+    if (!rest.uv.empty()) cloth.mesh.uv = rest.uv;
+  }
+  check_cloth_mesh(cloth.mesh, name.text());
+  check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, name.text() + " (rest shape)");
+  int levels = 0;
+  if (object.has("subdivide"))
+    levels = static_cast<int>(object["subdivide"].integer(0, kMaxSubdivisions));
+  for (int i = 0; i < levels; ++i) {
+    if (cloth.mesh.faces.size() * 4 > static_cast<std::size_t>(kMaxTriangles))
+      object["subdivide"].refuse("at most 20 million triangles");
+    subdivide(cloth.mesh, cloth.rest);
+  }
+}
+
+void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
+  JsonObject mesh(object["mesh"]);
+  double triangles = kDefaultTriangles;
+  if (object.has("triangles"))
+    triangles = static_cast<double>(object["triangles"].integer(2, kMaxTriangles));
+  const GridShape shape = parse_grid(mesh.required("grid"), triangles * folder.triangle_scale);
+  mesh.finish();
+  for (const char* key : {"rest", "subdivide"})
+    if (object.has(key))
+      object[key].refuse("no such key: only for mesh files, a grid is flat at rest");
+  loaded.grid = make_grid(shape);
+  loaded.cloth.mesh = std::move(loaded.grid->mesh);
+  loaded.cloth.rest = loaded.grid->rest;
+}
+
+void place_cloth(JsonObject& object, LoadedCloth& loaded) {
+  Cloth& cloth = loaded.cloth;
+  if (object.has("transform")) {
+    const Placement place = parse_transform(object["transform"]);
+    const Vec3d s = place.scale;
+    if (!cloth.mesh.uv.empty() && (s.x != s.y || s.y != s.z))
+      object["transform"].refuse("one scale for all axes on a cloth with material coordinates");
+    for (Vec3d& p : cloth.mesh.positions) p = place(p);
+    for (Vec3d& p : cloth.rest) p = {s.x * p.x, s.y * p.y, s.z * p.z};
+    for (auto& corners : cloth.mesh.uv)
+      for (Vec2d& corner : corners) corner = s.x * corner;
+  }
+  if (!loaded.grid && !is_material_space(cloth.mesh.uv, cloth.rest, cloth.mesh.faces))
+    cloth.mesh.uv.clear();
+}
+
+void pin_box(const JsonValue& value, Cloth& cloth) {
+  const std::vector<JsonValue> corners = value.items();
+  if (corners.size() != 2) value.refuse("two corners: [[x, y, z], [x, y, z]]");
+  const Vec3d low = corners[0].vector(), high = corners[1].vector();
+  const std::size_t before = cloth.pins.size();
+  for (std::size_t v = 0; v < cloth.mesh.positions.size(); ++v) {
+    const Vec3d p = cloth.mesh.positions[v];
+    const bool inside = p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y &&
+                        p.z >= low.z && p.z <= high.z;
+    if (inside) cloth.pins.push_back(static_cast<Index>(v));
+  }
+  if (cloth.pins.size() == before)
+    value.refuse("a box with at least one vertex of the cloth in it");
+}
+
+void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
+  std::vector<Index>& pins = loaded.cloth.pins;
+  for (const JsonValue& item : value.items()) {
+    if (item.json().is_object()) {
+      JsonObject object(item);
+      pin_box(object.required("box"), loaded.cloth);
+      object.finish();
+      continue;
+    }
+    std::vector<Index> named;
+    if (item.json().is_string() && loaded.grid) named = grid_vertices(*loaded.grid, item.text());
+    if (named.empty()) named = {parse_vertex(item, loaded)};
+    pins.insert(pins.end(), named.begin(), named.end());
+  }
+  std::ranges::sort(pins);
+  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
+}
+
+}  // namespace
+
+double total_grid_triangles(const nlohmann::json& scene) {
+  double total = 0;
+  if (!scene.is_object() || !scene.contains("cloths")) return 0;
+  for (const auto& cloth : scene["cloths"]) {
+    const bool is_grid = cloth.is_object() && cloth.contains("mesh") && cloth["mesh"].is_object() &&
+                         cloth["mesh"].contains("grid");
+    if (!is_grid) continue;
+    const bool chosen = cloth.contains("triangles") && cloth["triangles"].is_number();
+    total += chosen ? cloth["triangles"].get<double>() : kDefaultTriangles;
+  }
+  return total;
+}
+
+LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number) {
+  JsonObject object(value);
+  LoadedCloth loaded;
+  loaded.cloth.name = object.text("name", "cloth" + std::to_string(number));
+  const JsonValue mesh = object.required("mesh");
+  if (mesh.json().is_string()) {
+    read_cloth_mesh(object, folder, loaded.cloth);
+  } else {
+    make_cloth_grid(object, folder, loaded);
+  }
+  place_cloth(object, loaded);
+  if (object.has("pins")) parse_pins(object["pins"], loaded);
+  const JsonValue material = object["material"];
+  loaded.cloth.material = material.json().is_object()
+                              ? parse_material(material.json(), material.where(), folder.path)
+                              : load_material(object.text("material", "default"), folder.path);
+  refuse_feature(object, "seams", "use one mesh whose panels share vertices");
+  object.finish();
+  return loaded;
+}
+
+}  // namespace icloth

@@ -1,0 +1,58 @@
+// Obstacles of a scene file.
+#include "sim/assets.h"
+#include "sim/body_io.h"
+#include "sim/mesh_io.h"
+#include "sim/scene_json.h"
+
+namespace icloth {
+namespace {
+
+std::vector<Keyframe> parse_motion(const JsonValue& value) {
+  std::vector<Keyframe> motion;
+  for (const JsonValue& item : value.items()) {
+    JsonObject object(item);
+    Keyframe key;
+    key.time = object.required("time").number({0, 1e6});
+    if (!motion.empty() && key.time <= motion.back().time)
+      object["time"].refuse("a time after that of the keyframe before");
+    key.translation = object.vector("translate", {});
+    if (object.has("rotate")) key.rotation = parse_rotation(object["rotate"]);
+    object.finish();
+    motion.push_back(key);
+  }
+  if (motion.empty()) value.refuse("at least one keyframe");
+  return motion;
+}
+
+void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Placement& place,
+                       Obstacle& obstacle) {
+  const std::string& name = object["animation"].text();
+  if (!name.ends_with(".pc2")) object["animation"].refuse("a .pc2 file");
+  obstacle.frames =
+      read_pc2(find_asset(name, folder.path), static_cast<Index>(obstacle.mesh.positions.size()));
+  for (auto& frame : obstacle.frames)
+    for (Vec3f& p : frame) p = convert<float>(place(convert<double>(p)));
+}
+
+}  // namespace
+
+Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t number) {
+  JsonObject object(value);
+  Obstacle obstacle;
+  obstacle.name = object.text("name", "obstacle" + std::to_string(number));
+  const JsonValue mesh = object.required("mesh");
+  obstacle.mesh = mesh.json().is_string() ? read_body(find_asset(mesh.text(), folder.path))
+                                          : parse_body_shape(mesh);
+  Placement place;
+  if (object.has("transform")) place = parse_transform(object["transform"]);
+  for (Vec3d& p : obstacle.mesh.positions) p = place(p);
+  obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
+  if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
+  if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);
+  refuse_feature(object, "friction", "see parameters: proximity.friction_obstacle");
+  refuse_feature(object, "thickness", "see parameters: proximity.thickness");
+  object.finish();
+  return obstacle;
+}
+
+}  // namespace icloth

@@ -1,0 +1,156 @@
+// Shapes and places of a scene file's objects.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/rotation.h"
+#include "sim/scene_json.h"
+
+namespace icloth {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMaxCells = 4e6;  ///< of a box, a plane or a funnel
+constexpr Index kDefaultTriangles = 2000;
+const NumberRange kSize{1e-6, 1e6};
+
+/// Rotation vector of a rotation matrix; near half a turn the axis comes from the symmetric part.
+Vec3d rotation_vector(const Mat3<double>& r) {
+  const Vec3d twice_axis{r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)};
+  const double sine = norm(twice_axis) / 2, cosine = (r(0, 0) + r(1, 1) + r(2, 2) - 1) / 2;
+  const double angle = std::atan2(sine, cosine);
+  if (sine > 1e-6) return angle * normalized(twice_axis);
+  if (cosine > 0) return 0.5 * twice_axis;
+  int k = 0;
+  for (int i = 1; i < 3; ++i)
+    if (r(i, i) > r(k, k)) k = i;
+  return angle * normalized(Vec3d{r(0, k) + (k == 0), r(1, k) + (k == 1), r(2, k) + (k == 2)});
+}
+
+TriangleMesh parse_funnel(const JsonValue& value) {
+  JsonObject object(value);
+  FunnelShape shape;
+  shape.top_radius = object.number("top_radius", shape.top_radius, kSize);
+  shape.bottom_radius = object.number("bottom_radius", shape.bottom_radius, kSize);
+  shape.cone_height = object.number("cone_height", shape.cone_height, kSize);
+  shape.pipe_length = object.number("pipe_length", shape.pipe_length, {0, 1e6});
+  shape.wall = object.number("wall", shape.wall, kSize);
+  shape.edge = object.number("edge", shape.edge, kSize);
+  object.finish();
+  const double outline = 2 * (shape.top_radius + shape.cone_height + shape.pipe_length);
+  const double around =
+      std::max(std::numbers::pi * (shape.top_radius + shape.bottom_radius), 8 * shape.edge);
+  if (outline * around / (shape.edge * shape.edge) > kMaxCells)
+    value.refuse("a coarser edge: at most 4 million cells");
+  return make_funnel(shape);
+}
+
+TriangleMesh parse_box(const JsonValue& value) {
+  JsonObject object(value);
+  const Vec3d size = object.required("size").vector(kSize);
+  const double largest = norm_max(size), edge = object.number("edge", largest / 10, kSize);
+  object.finish();
+  if (6 * largest * largest / (edge * edge) > kMaxCells)
+    value.refuse("a coarser edge: at most 4 million cells");
+  return make_box(size, edge);
+}
+
+TriangleMesh parse_plane(const JsonValue& value) {
+  JsonObject object(value);
+  const std::vector<double> size = object.required("size").numbers(2, kSize);
+  const double edge = object.number("edge", std::max(size[0], size[1]) / 20, kSize);
+  object.finish();
+  if (std::max(size[0], edge) * std::max(size[1], edge) / (edge * edge) > kMaxCells)
+    value.refuse("a coarser edge: at most 4 million cells");
+  return make_plane(size[0], size[1], edge);
+}
+
+TriangleMesh parse_round(const JsonValue& value, bool capsule) {
+  JsonObject object(value);
+  const double radius = object.required("radius").number(kSize);
+  // Longer ones would be cut into rings without bound.
+  const double length = capsule ? object.required("length").number({0, 1000 * radius}) : 0;
+  Index triangles = kDefaultTriangles;
+  if (object.has("triangles"))
+    triangles = static_cast<Index>(object["triangles"].integer(20, 1'000'000));
+  object.finish();
+  return capsule ? make_capsule(radius, length, triangles) : make_sphere(radius, triangles);
+}
+
+}  // namespace
+
+GridShape parse_grid(JsonValue value, double triangles) {
+  JsonObject object(value);
+  GridShape shape;
+  const std::vector<double> size = object.required("size").numbers(2, kSize);
+  shape.width = size[0];
+  shape.height = size[1];
+  shape.triangles = static_cast<Index>(std::clamp<double>(std::round(triangles), 2, kMaxTriangles));
+  const std::string orientation = object.text("orientation", "vertical");
+  if (orientation != "vertical" && orientation != "horizontal")
+    object["orientation"].refuse("\"vertical\" or \"horizontal\"");
+  shape.horizontal = orientation == "horizontal";
+  if (object.has("bend")) {
+    JsonObject bend(object["bend"]);
+    shape.bend_radius = bend.required("radius").number(kSize);
+    shape.bend_angle = bend.number("angle", 180, {0, 350});
+    bend.finish();
+  }
+  object.finish();
+  return shape;
+}
+
+TriangleMesh parse_body_shape(JsonValue value) {
+  JsonObject object(value);
+  if (value.json().size() != 1) value.refuse("one of sphere, capsule, box, plane, funnel");
+  TriangleMesh mesh;
+  if (object.has("sphere")) mesh = parse_round(object["sphere"], false);
+  if (object.has("capsule")) mesh = parse_round(object["capsule"], true);
+  if (object.has("box")) mesh = parse_box(object["box"]);
+  if (object.has("plane")) mesh = parse_plane(object["plane"]);
+  if (object.has("funnel")) mesh = parse_funnel(object["funnel"]);
+  object.finish();
+  return mesh;
+}
+
+Vec3d parse_rotation(JsonValue value) {
+  if (value.json().is_object()) {
+    JsonObject object(value);
+    const Vec3d axis = object.required("axis").vector();
+    const double angle = object.required("angle").number({-1e6, 1e6});
+    object.finish();
+    if (!(norm(axis) > 0)) object["axis"].refuse("an axis longer than 0");
+    return angle * kDegree * normalized(axis);
+  }
+  const Vec3d degrees = value.vector({-1e6, 1e6});
+  const auto about = [](Vec3d axis) { return rotation_matrix(kDegree * axis); };
+  // A turn about one axis keeps its full turns: keyframes may count beyond 360 degrees.
+  const int axes = (degrees.x != 0) + (degrees.y != 0) + (degrees.z != 0);
+  if (axes <= 1) return kDegree * degrees;
+  const Mat3<double> x = about({degrees.x, 0, 0}), y = about({0, degrees.y, 0}),
+                     z = about({0, 0, degrees.z});
+  Mat3<double> result;
+  for (int c = 0; c < 3; ++c) {
+    const Vec3d column = z * (y * Vec3d{x(0, c), x(1, c), x(2, c)});
+    result(0, c) = column.x;
+    result(1, c) = column.y;
+    result(2, c) = column.z;
+  }
+  return rotation_vector(result);
+}
+
+Placement parse_transform(JsonValue value) {
+  JsonObject object(value);
+  Placement place;
+  place.translation = object.vector("translate", {});
+  if (object.has("rotate")) place.rotation = rotation_matrix(parse_rotation(object["rotate"]));
+  if (object.has("scale")) {
+    const JsonValue scale = object["scale"];
+    const double same = scale.json().is_number() ? scale.number(kSize) : 0;
+    place.scale = same > 0 ? Vec3d{same, same, same} : scale.vector(kSize);
+  }
+  object.finish();
+  return place;
+}
+
+}  // namespace icloth
