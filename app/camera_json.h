@@ -1,0 +1,15 @@
+// A camera as text, for the clipboard: the object that scenes hold in "cameras".
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/scene.h"
+
+namespace icloth {
+
+std::string camera_to_json(const CameraPose& pose);
+/// Nothing when the text is no camera.
+std::optional<CameraPose> camera_from_json(const std::string& text);
+
+}  // namespace icloth

@@ -1,0 +1,89 @@
+// A failure is explained in a sentence, shown on the mesh, and comes with what can be done.
+#include "app/panels/panel.h"
+#include "app/theme.h"
+
+namespace icloth {
+
+namespace {
+
+constexpr std::size_t kMaxListed = 50;
+
+std::string face_text(const World& world, Index face) {
+  for (const WorldObject& object : world.objects) {
+    if (face >= object.first_face && face < object.first_face + object.face_count) {
+      return (object.cloth ? "cloth " : "obstacle ") + object.name + " face " +
+             std::to_string(face - object.first_face);
+    }
+  }
+  return "face " + std::to_string(face);
+}
+
+std::string pair_text(const OffendingPair& pair) {
+  const auto v = [&pair](std::size_t k) { return std::to_string(pair.vertices[k]); };
+  if (pair.edge_edge) return "edge " + v(0) + "-" + v(1) + " with edge " + v(2) + "-" + v(3);
+  return "vertex " + v(0) + " with face " + v(1) + "-" + v(2) + "-" + v(3);
+}
+
+void draw_pairs(const PanelContext& context) {
+  const auto& start = context.start_intersections;
+  const auto& offending = context.state.report.offending;
+  const std::size_t count = start.empty() ? offending.size() : start.size();
+  if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("##list", {0, line * static_cast<float>(std::min<std::size_t>(count, 6))});
+  for (std::size_t k = 0; k < std::min(count, kMaxListed); ++k) {
+    const std::string text = start.empty() ? pair_text(offending[k])
+                                           : face_text(context.world, start[k].a) + " crosses " +
+                                                 face_text(context.world, start[k].b);
+    ImGui::BulletText("%s", text.c_str());
+  }
+  if (count > kMaxListed) ImGui::TextDisabled("and %zu more", count - kMaxListed);
+  ImGui::EndChild();
+  ImGui::TreePop();
+}
+
+void draw_buttons(PanelContext& context) {
+  if (ImGui::Button("Show")) context.ui.show_failure = true;
+  if (!context.start_intersections.empty()) return;
+  ImGui::SameLine();
+  if (ImGui::Button("Smaller step and go on")) {
+    const ParameterInfo& step = *find_parameter("step.time_step");
+    context.edits.set(step, context.edits.value(step) / 2);
+    for (const auto& [name, value] : context.edits.take_changes()) context.session.set(name, value);
+    context.session.play();
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("One step back")) context.session.step_back();
+  ImGui::SameLine();
+  if (ImGui::Button("Save session")) context.ui.save_session = true;
+}
+
+}  // namespace
+
+void draw_failure(PanelContext& context, const Rect& view) {
+  if (!context.state.failed) return;
+  const float width = std::min(560 * context.scale, view.width - 32 * context.scale);
+  ImGui::SetNextWindowPos({view.x + (view.width - width) / 2, view.y + 16 * context.scale});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.5f * context.scale);
+  ImGui::PushStyleColor(ImGuiCol_Border, colour::kBad);
+  ImGui::Begin("##failure", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::TextColored(vec4(colour::kBad), "%s",
+                     context.start_intersections.empty() ? "The step was not accepted"
+                                                         : "The start state is not valid");
+  ImGui::PushTextWrapPos();
+  ImGui::TextUnformatted(shown(context.state.failure).c_str());
+  ImGui::PopTextWrapPos();
+  draw_pairs(context);
+  draw_buttons(context);
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  context.ui.overlays.push_back({at.x, at.y, size.x, size.y});
+  ImGui::End();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace icloth

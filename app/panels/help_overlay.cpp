@@ -1,0 +1,55 @@
+// F1: the table of keys.
+
+#include "app/bindings.h"
+#include "app/panels/panel.h"
+#include "app/theme.h"
+
+namespace icloth {
+
+namespace {
+
+void draw_group(std::string_view group) {
+  ImGui::TextColored(vec4(colour::kAccent), "%s", std::string(group).c_str());
+  if (!ImGui::BeginTable(std::string(group).c_str(), 2, ImGuiTableFlags_RowBg)) return;
+  ImGui::TableSetupColumn("input", ImGuiTableColumnFlags_WidthStretch, 0.42f);
+  ImGui::TableSetupColumn("action", ImGuiTableColumnFlags_WidthStretch, 0.58f);
+  for (const Binding& row : binding_table()) {
+    if (row.group != group || row.input.empty()) continue;
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(row.input.data(), row.input.data() + row.input.size());
+    ImGui::TableNextColumn();
+    ImGui::PushTextWrapPos();
+    ImGui::TextDisabled("%s", std::string(row.text).c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::EndTable();
+  ImGui::Spacing();
+}
+
+}  // namespace
+
+void draw_help(PanelContext& context, const Rect& view) {
+  if (!context.ui.help) return;
+  const float width = std::min(680 * context.scale, view.width - 24 * context.scale);
+  const float height = view.height - 24 * context.scale;
+  ImGui::SetNextWindowPos({view.x + (view.width - width) / 2, view.y + 12 * context.scale});
+  ImGui::SetNextWindowSize({width, height});
+  ImGui::SetNextWindowBgAlpha(0.95f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
+  ImGui::Begin("##help", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings);
+  std::string_view group;
+  for (const Binding& row : binding_table()) {
+    if (row.group == group) continue;
+    group = row.group;
+    draw_group(group);
+  }
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  context.ui.overlays.push_back({at.x, at.y, size.x, size.y});
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+}  // namespace icloth

@@ -1,0 +1,78 @@
+// What the panels see and what they may ask for. Each panel is one function that draws itself
+// into the current ImGui frame.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "app/drag.h"
+#include "app/panels/stage_history.h"
+#include "app/parameter_edits.h"
+#include "app/session.h"
+#include "render/renderer.h"
+#include "sim/intersections.h"
+#include "sim/world.h"
+
+namespace icloth {
+
+/// Place on the window [logical pixels].
+struct Rect {
+  float x = 0, y = 0, width = 0, height = 0;
+  bool contains(double px, double py) const {
+    return px >= x && py >= y && px < x + width && py < y + height;
+  }
+};
+
+/// What the user arranged, and what a panel asks the viewer to do.
+struct UiState {
+  bool panels = true, help = false;
+  ViewMode view = ViewMode::shaded;
+  std::int64_t chosen_step = -1;  ///< clicked in the stage plot, −1: the newest
+  int history_back = 0;           ///< while the history slider is held
+  bool slider_held = false;       ///< the active slider has moved before in this gesture
+
+  bool show_failure = false;  ///< asked for: look at the offending faces
+  bool save_session = false;  ///< asked for: write the recording
+  bool frame_all = false;
+  std::vector<Rect> overlays;  ///< floating panels of this frame: clicks there are theirs
+};
+
+struct PanelContext {
+  Session& session;
+  const PublishedState& state;
+  ParameterEdits& edits;
+  const StageHistory& stages;
+  const Drag& drag;
+  const Scene& scene;
+  const World& world;
+  const std::vector<IntersectingFaces>& start_intersections;
+  UiState& ui;
+  float scale = 1;
+};
+
+/// Figures of the status bar that come from the program around the panels.
+struct StatusFigures {
+  std::string device;      ///< "cpu32, 3 threads"
+  std::string vertex_way;  ///< "host copy (built without CUDA)"
+  double ui_fps = 0;
+  std::string note;  ///< last message, empty after a while
+};
+
+inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1
+
+/// The column on the left: transport, stage plot, then tabs of parameters and statistics.
+void draw_side_panel(PanelContext& context, const Rect& place);
+void draw_transport(PanelContext& context);
+void draw_stage_plot(PanelContext& context);
+void draw_parameters(PanelContext& context);
+void draw_statistics(PanelContext& context);
+/// Hint line and status line along the bottom; the penetration counter is always there.
+void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place);
+/// Says why nothing goes on, over the top of the view; nothing when all is well.
+void draw_failure(PanelContext& context, const Rect& view);
+/// The table of keys over the middle of the view.
+void draw_help(PanelContext& context, const Rect& view);
+
+}  // namespace icloth

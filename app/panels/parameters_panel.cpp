@@ -1,0 +1,140 @@
+// Sliders made from the table of parameters: unit, range, scale and tooltips come from there.
+#include <cstdio>
+
+#include "app/panels/panel.h"
+#include "app/theme.h"
+
+namespace icloth {
+
+namespace {
+
+std::string group_of(const ParameterInfo& info) {
+  return std::string(info.name.substr(0, info.name.find('.')));
+}
+
+/// The groups that people reach for first are open from the start.
+bool open_at_first(const std::string& group) {
+  return group == "step" || group == "gravity" || group == "wind" || group == "material" ||
+         group == "impact_zones";
+}
+
+std::string heading(const std::string& group) {
+  std::string text = group;
+  for (char& c : text) {
+    if (c == '_') c = ' ';
+  }
+  text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+void explain(const ParameterInfo& info, const ParameterEdits& edits) {
+  if (!ImGui::IsItemHovered()) return;
+  const std::string unit = info.unit.empty() ? "" : " " + std::string(info.unit);
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+  ImGui::TextUnformatted(shown(info.label).c_str());
+  ImGui::TextDisabled("%s", std::string(info.name).c_str());
+  ImGui::Text("%s", shown("lower: " + std::string(info.lower)).c_str());
+  ImGui::Text("%s", shown("higher: " + std::string(info.higher)).c_str());
+  ImGui::TextDisabled("%s",
+                      shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
+                            ", in this scene " + number(edits.start_value(info)) + unit)
+                          .c_str());
+  ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
+  ImGui::TextDisabled("right click: reset; Ctrl+click: type a value");
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+/// The menu of a right click.
+void offer_reset(const ParameterInfo& info, ParameterEdits& edits) {
+  if (!ImGui::BeginPopupContextItem("##menu")) return;
+  const std::string back = "Reset to " + number(edits.start_value(info));
+  if (ImGui::MenuItem(back.c_str(), nullptr, false, edits.changed(info))) edits.reset(info);
+  const std::string setting = std::string(info.name) + "=" + number(edits.value(info));
+  if (ImGui::MenuItem(("Copy --set " + setting).c_str())) {
+    ImGui::SetClipboardText(("--set " + setting).c_str());
+  }
+  ImGui::EndPopup();
+}
+
+bool edit_number(const ParameterInfo& info, double& value) {
+  const ImGuiSliderFlags flags =
+      ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  std::string format = info.unit.empty() ? "" : " " + shown(info.unit);
+  if (std::holds_alternative<int Parameters::*>(info.member)) {
+    format = "%d" + format;
+    int whole = static_cast<int>(value);
+    const bool moved = ImGui::SliderInt("##value", &whole, static_cast<int>(info.minimum),
+                                        static_cast<int>(info.maximum), format.c_str(), flags);
+    value = whole;
+    return moved;
+  }
+  format = (info.maximum < 1 && !info.logarithmic ? "%.5f" : "%.4g") + format;
+  return ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &info.minimum, &info.maximum,
+                             format.c_str(), flags);
+}
+
+void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
+  ImGui::PushID(info.name.data());
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  const bool changed = edits.changed(info);
+  ImGui::TextColored(vec4(changed ? colour::kChanged : colour::kText), "%s",
+                     shown(info.label).c_str());
+  explain(info, edits);
+  ImGui::TableNextColumn();
+  ImGui::SetNextItemWidth(-1);
+  double value = edits.value(info);
+  bool moved = false;
+  if (std::holds_alternative<bool Parameters::*>(info.member)) {
+    bool on = value != 0;
+    moved = ImGui::Checkbox("##value", &on);
+    value = on;
+  } else {
+    moved = edit_number(info, value);
+  }
+  if (ImGui::IsItemActivated()) held = false;
+  if (moved) {
+    edits.set(info, value, held);
+    held = true;
+  }
+  if (!ImGui::IsItemActive()) explain(info, edits);
+  offer_reset(info, edits);
+  ImGui::PopID();
+}
+
+}  // namespace
+
+void draw_parameters(PanelContext& context) {
+  const auto table = parameter_table();
+  for (std::size_t k = 0; k < table.size();) {
+    const std::string group = group_of(table[k]);
+    std::size_t end = k;
+    int changed = 0;
+    for (; end < table.size() && group_of(table[end]) == group; ++end) {
+      changed += context.edits.changed(table[end]);
+    }
+    const std::string text = heading(group) +
+                             (changed ? "  (" + std::to_string(changed) + " changed)" : "") +
+                             "###" + group;
+    const ImGuiTreeNodeFlags flags =
+        open_at_first(group) ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+    if (ImGui::CollapsingHeader(text.c_str(), flags) && ImGui::BeginTable("##rows", 2)) {
+      ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch, 0.54f);
+      ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.46f);
+      for (; k < end; ++k) draw_row(table[k], context.edits, context.ui.slider_held);
+      ImGui::EndTable();
+    }
+    k = end;
+  }
+}
+
+}  // namespace icloth

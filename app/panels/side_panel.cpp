@@ -1,0 +1,110 @@
+// The column on the left, its transport buttons and its tabs.
+#include <cstdio>
+
+#include "app/panels/panel.h"
+#include "app/theme.h"
+
+namespace icloth {
+
+namespace {
+
+bool wide_button(const char* label, float width, ImU32 tint = 0) {
+  if (tint) ImGui::PushStyleColor(ImGuiCol_Button, tint);
+  const bool pressed = ImGui::Button(label, {width, 0});
+  if (tint) ImGui::PopStyleColor();
+  return pressed;
+}
+
+void tooltip(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+void draw_history(PanelContext& context) {
+  const int count = static_cast<int>(context.state.history);
+  int& back = context.ui.history_back;
+  char label[96];
+  if (back) {
+    std::snprintf(label, sizeof label, "%d of %d steps back", back, count);
+  } else {
+    std::snprintf(label, sizeof label, "history: %d steps", count);
+  }
+  ImGui::SetNextItemWidth(-1);
+  ImGui::BeginDisabled(count == 0);
+  int position = count - back;
+  if (ImGui::SliderInt("##history", &position, 0, std::max(count, 1), label)) {
+    back = count - position;
+  }
+  tooltip("Drag to the left and let go: go back to an earlier state and on from there.");
+  if (ImGui::IsItemDeactivated()) {
+    if (back > 0) context.session.step_back(static_cast<std::size_t>(back));
+    back = 0;
+  }
+  ImGui::EndDisabled();
+}
+
+}  // namespace
+
+void draw_transport(PanelContext& context) {
+  const PublishedState& state = context.state;
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
+  if (wide_button(state.playing ? "Pause" : "Play", width,
+                  state.playing ? 0 : IM_COL32(38, 92, 136, 255))) {
+    state.playing ? context.session.pause() : context.session.play();
+  }
+  tooltip("Space");
+  ImGui::SameLine();
+  if (wide_button("Back", width)) context.session.step_back();
+  tooltip("Left: one step back");
+  ImGui::SameLine();
+  if (wide_button("Step", width)) context.session.step_once();
+  tooltip("Right: one step");
+  ImGui::SameLine();
+  if (wide_button("Reset", width)) context.session.reset();
+  tooltip("R: to the start state, parameters stay");
+  draw_history(context);
+  bool real_time = state.real_time, scripted = state.scripted;
+  if (ImGui::Checkbox("Real time", &real_time)) context.session.set_real_time(real_time);
+  tooltip("On: never faster than the clock. Off: as fast as the solver goes.");
+  if (context.scene.input.empty()) return;
+  ImGui::SameLine();
+  if (ImGui::Checkbox("Play scripted input", &scripted)) context.session.set_scripted(scripted);
+  tooltip("Apply the grabs that are written in the scene file.");
+}
+
+void draw_side_panel(PanelContext& context, const Rect& place) {
+  ImGui::SetNextWindowPos({place.x, place.y});
+  ImGui::SetNextWindowSize({place.width, place.height});
+  ImGui::Begin("##side", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::TextUnformatted(context.scene.name.c_str());
+  char clock[64];
+  std::snprintf(clock, sizeof clock, "%.2f s   step %lld", context.state.time,
+                static_cast<long long>(context.state.step));
+  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(clock).x -
+                  ImGui::GetStyle().WindowPadding.x);
+  ImGui::TextDisabled("%s", clock);
+  draw_transport(context);
+  ImGui::Spacing();
+  draw_stage_plot(context);
+  ImGui::Spacing();
+  if (ImGui::BeginTabBar("##tabs")) {
+    if (ImGui::BeginTabItem("Parameters")) {
+      ImGui::BeginChild("##parameters");
+      draw_parameters(context);
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
+    if (ImGui::BeginTabItem("Statistics")) {
+      ImGui::BeginChild("##statistics");
+      draw_statistics(context);
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
+    ImGui::EndTabBar();
+  }
+  ImGui::End();
+}
+
+}  // namespace icloth

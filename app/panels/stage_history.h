@@ -1,0 +1,42 @@
+// The reports of the last steps, for plots.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sim/report.h"
+
+namespace icloth {
+
+/// A stage of the step as plots show it.
+struct Stage {
+  std::string_view name;
+  double StepReport::*ms;
+  std::uint32_t colour;  ///< 0xAABBGGRR
+};
+std::span<const Stage> stages();
+
+class StageHistory {
+ public:
+  static constexpr std::size_t kLength = 120;
+
+  /// Reports of a state that was left by going back are dropped.
+  void add(std::vector<StepReport> reports);
+  const std::deque<StepReport>& reports() const { return reports_; }
+  const StepReport* newest() const { return reports_.empty() ? nullptr : &reports_.back(); }
+  const StepReport* find(std::int64_t step) const;
+  /// Height of the tallest bar, without the one slowest step in fifty [ms].
+  double scale_ms() const;
+  /// Mean over the history [ms].
+  double mean(double StepReport::*member) const;
+  /// Drops the reports of steps after `step`.
+  void cut(std::int64_t step);
+
+ private:
+  std::deque<StepReport> reports_;
+};
+
+}  // namespace icloth

@@ -1,0 +1,72 @@
+// The two lines along the bottom: what can be done now, and how it goes.
+#include <cstdio>
+
+#include "app/bindings.h"
+#include "app/panels/panel.h"
+#include "app/theme.h"
+
+namespace icloth {
+
+namespace {
+
+void item(const char* text, ImU32 tint = colour::kText) {
+  ImGui::SameLine(0, ImGui::GetFontSize() * 1.3f);
+  ImGui::TextColored(vec4(tint), "%s", text);
+}
+
+/// Always visible, also when the panels are hidden.
+void draw_penetrations(const PublishedState& state) {
+  char text[48];
+  const long long left = static_cast<long long>(state.report.impacts_left);
+  std::snprintf(text, sizeof text, "penetrations %lld", left);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float radius = ImGui::GetFontSize() * 0.3f;
+  const ImU32 tint = left == 0 ? colour::kGood : colour::kBad;
+  ImGui::GetWindowDrawList()->AddCircleFilled({at.x + radius, at.y + ImGui::GetFontSize() * 0.55f},
+                                              radius, tint);
+  ImGui::Dummy({2 * radius, 0});
+  ImGui::SameLine();
+  ImGui::TextColored(vec4(tint), "%s", text);
+}
+
+std::string thousands(long long count) {
+  char text[32];
+  if (count < 10'000) {
+    std::snprintf(text, sizeof text, "%lld", count);
+  } else {
+    std::snprintf(text, sizeof text, "%.1fK", static_cast<double>(count) / 1000);
+  }
+  return text;
+}
+
+}  // namespace
+
+void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place) {
+  ImGui::SetNextWindowPos({place.x, place.y});
+  ImGui::SetNextWindowSize({place.width, place.height});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::kBar);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12 * context.scale, 7 * context.scale});
+  ImGui::Begin("##status", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  if (figures.note.empty()) {
+    ImGui::TextDisabled("%s", hint_line(context.drag.grabbing()).c_str());
+  } else {
+    ImGui::TextColored(vec4(colour::kAccent), "%s", figures.note.c_str());
+  }
+  draw_penetrations(context.state);
+  item(figures.device.c_str());
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f steps/s", context.state.steps_per_second);
+  item(context.state.playing ? text : "paused",
+       context.state.playing ? colour::kText : colour::kChanged);
+  std::snprintf(text, sizeof text, "window %.0f fps", figures.ui_fps);
+  item(text);
+  item((thousands(context.world.cloth_faces) + " triangles").c_str());
+  item(("vertices by " + figures.vertex_way).c_str(), colour::kDim);
+  ImGui::End();
+}
+
+}  // namespace icloth

@@ -1,0 +1,52 @@
+#include "app/parameter_edits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace icloth {
+
+void ParameterEdits::apply(const ParameterInfo& info, double value) {
+  set_parameter(values_, info, value);
+  if (!changes_.empty() && changes_.back().first == info.name) {
+    changes_.back().second = value;
+  } else {
+    changes_.emplace_back(info.name, value);
+  }
+}
+
+void ParameterEdits::set(const ParameterInfo& info, double value, bool continued) {
+  if (!std::isfinite(value)) return;
+  if (!std::holds_alternative<double Parameters::*>(info.member)) value = std::round(value);
+  value = std::clamp(value, info.minimum, info.maximum);
+  const double before = this->value(info);
+  if (value == before) return;
+  apply(info, value);
+  undone_.clear();
+  if (continued && !done_.empty() && done_.back().info == &info) {
+    done_.back().after = value;
+  } else {
+    done_.push_back({&info, before, value});
+  }
+}
+
+bool ParameterEdits::undo() {
+  if (done_.empty()) return false;
+  apply(*done_.back().info, done_.back().before);
+  undone_.push_back(done_.back());
+  done_.pop_back();
+  return true;
+}
+
+bool ParameterEdits::redo() {
+  if (undone_.empty()) return false;
+  apply(*undone_.back().info, undone_.back().after);
+  done_.push_back(undone_.back());
+  undone_.pop_back();
+  return true;
+}
+
+std::vector<std::pair<std::string, double>> ParameterEdits::take_changes() {
+  return std::exchange(changes_, {});
+}
+
+}  // namespace icloth

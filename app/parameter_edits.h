@@ -1,0 +1,45 @@
+// The user's values of the parameters, with undo. The solver follows them between two steps.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/parameters.h"
+
+namespace icloth {
+
+class ParameterEdits {
+ public:
+  /// `start` are the scene's values: what a reset of a value returns to.
+  explicit ParameterEdits(const Parameters& start) : start_(start), values_(start) {}
+
+  const Parameters& values() const { return values_; }
+  double value(const ParameterInfo& info) const { return get_parameter(values_, info); }
+  double start_value(const ParameterInfo& info) const { return get_parameter(start_, info); }
+  bool changed(const ParameterInfo& info) const { return value(info) != start_value(info); }
+
+  /// Clamps to the valid range. With `continued` the change belongs to the one before (a slider
+  /// that is still held) and is undone together with it.
+  void set(const ParameterInfo& info, double value, bool continued = false);
+  void reset(const ParameterInfo& info) { set(info, start_value(info)); }
+  /// False when there is nothing to undo or redo.
+  bool undo();
+  bool redo();
+
+  /// Changes since the last call, for the session.
+  std::vector<std::pair<std::string, double>> take_changes();
+
+ private:
+  struct Edit {
+    const ParameterInfo* info;
+    double before, after;
+  };
+  void apply(const ParameterInfo& info, double value);
+
+  Parameters start_, values_;
+  std::vector<Edit> done_, undone_;
+  std::vector<std::pair<std::string, double>> changes_;
+};
+
+}  // namespace icloth

@@ -1,0 +1,315 @@
+#include "app/viewer.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "app/theme.h"
+#include "render/ui_painter.h"
+#include "sim/error.h"
+
+namespace icloth {
+
+namespace {
+
+constexpr double kNoteSeconds = 8, kStatusSeconds = 1;
+constexpr double kStrainRange = 0.1;
+
+bool is_software(const std::string& renderer) {
+  for (const char* name : {"llvmpipe", "softpipe", "SwiftShader"}) {
+    if (renderer.find(name) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Software rendering needs a core for itself; a graphics card does not.
+int solver_threads(int asked, bool software) {
+  if (asked > 0) return asked;
+  const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return software ? std::max(1, all - 1) : all;
+}
+
+std::string start_sentence(std::size_t pairs) {
+  if (pairs == 0) return {};
+  return "In the start state " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
+         " of faces cross each other (red). A solver that keeps layers apart cannot start from "
+         "there: move the objects apart in the scene file, or repair the mesh.";
+}
+
+std::unique_ptr<Session> make_session(const ViewOptions& options,
+                                      const std::shared_ptr<const Scene>& scene,
+                                      const std::string& refusal) {
+  SessionOptions session;
+  session.scene = scene->source.empty() ? options.scene : scene->source;
+  session.overrides = options.overrides;
+  session.refusal = refusal;
+  return std::make_unique<Session>(make_simulator(options.build, scene), session);
+}
+
+}  // namespace
+
+Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
+    : options_(options),
+      scene_(std::move(scene)),
+      world_(make_world(*scene_)),
+      start_intersections_(find_start_intersections(*scene_, options.build != Build::cpu64)),
+      window_("icloth - " + scene_->name, options.width, options.height),
+      ui_(window_),
+      renderer_(world_),
+      software_(is_software(gl_renderer())),
+      threads_(solver_threads(options.threads, software_)),
+      edits_(scene_->parameters) {
+  set_thread_count(threads_);
+  renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
+  session_ = make_session(options_, scene_, start_sentence(start_intersections_.size()));
+  if (!scene_->cameras.empty()) camera_ = Camera(scene_->cameras.front());
+  if (options_.play_script) session_->set_scripted(true);
+  if (options_.play) session_->play();
+}
+
+void Viewer::run() {
+  while (!window_.should_close()) frame();
+  session_->stop();
+  if (!options_.record_file.empty()) save_recording(session_->recording(), options_.record_file);
+}
+
+void Viewer::frame() {
+  const std::vector<WindowEvent> events = window_.poll();
+  if (window_.minimised()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return;
+  }
+  take_state();
+  for (const WindowEvent& event : events) handle(event);
+  hand_over();
+  ui_.begin_frame();
+  draw_panels();
+  ui_.end_frame();
+  update_hover();
+  hand_over();
+  draw_scene();
+  show_frame();
+  const double now = window_.seconds();
+  frame_times_.push_back(now);
+  while (now - frame_times_.front() > 1) frame_times_.pop_front();
+  if (test_file_.wanted() && now - last_status_ >= kStatusSeconds) {
+    test_file_.write(test_status());
+    last_status_ = now;
+  }
+}
+
+void Viewer::take_state() {
+  stages_.add(session_->take_reports());
+  if (!session_->take()) return;
+  const PublishedState& state = session_->state();
+  dirty_ = hover_stale_ = true;
+  if (state.rewinds != seen_rewinds_) {
+    seen_rewinds_ = state.rewinds;
+    drag_.restore(state.held);
+    stages_.cut(state.step);
+  }
+  if (state.notes != seen_notes_) {
+    seen_notes_ = state.notes;
+    tell(state.note);
+  }
+  if (state.failed != seen_failure_) {
+    seen_failure_ = state.failed;
+    marked_faces_ = failing_faces();
+  }
+}
+
+/// What hands and panels changed goes to the solver.
+void Viewer::hand_over() {
+  for (const InputEvent& event : drag_.take_events()) session_->post(event);
+  for (const auto& [name, value] : edits_.take_changes()) session_->set(name, value);
+}
+
+void Viewer::draw_panels() {
+  const float scale = ui_.scale();
+  const float wide = static_cast<float>(window_.width()),
+              high = static_cast<float>(window_.height());
+  const float bar = kBarHeight * scale, side = state_.panels ? kPanelWidth * scale : 0;
+  const Rect view{side, 0, wide - side, high - bar};
+  if (view.x != view_.x || view.width != view_.width || view.height != view_.height) dirty_ = true;
+  view_ = view;
+  state_.overlays.clear();
+  PanelContext context{*session_, session_->state(),    edits_, stages_, drag_, *scene_,
+                       world_,    start_intersections_, state_, scale};
+  if (state_.panels) draw_side_panel(context, {0, 0, side, high - bar});
+  draw_status_bar(context, figures(), {0, high - bar, wide, bar});
+  draw_failure(context, view_);
+  draw_help(context, view_);
+  draw_menu();
+  if (hover_ && !drag_.grabbing()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+  if (state_.show_failure) look_at_failure();
+  if (state_.save_session) act(Action::save_session);
+  state_.show_failure = state_.save_session = false;
+}
+
+void Viewer::draw_scene() {
+  if (!dirty_) return;
+  dirty_ = false;
+  const double factor = static_cast<double>(window_.framebuffer_width()) / window_.width();
+  const int width = std::max(8, static_cast<int>(view_.width * factor));
+  const int height = std::max(8, static_cast<int>(view_.height * factor));
+  picture_.resize(width, height);
+  const std::vector<HandleState> handles = handle_states();
+  std::vector<Index> pins;
+  for (Index v = 0; v < world_.cloth_vertices; ++v) {
+    if (world_.pinned[static_cast<std::size_t>(v)]) pins.push_back(v);
+  }
+  std::vector<Vec3f> hover;
+  if (hover_ && !drag_.grabbing()) hover.push_back(convert<float>(*hover_));
+  Frame scene_frame;
+  scene_frame.positions = session_->state().positions;
+  scene_frame.handles = handles;
+  scene_frame.marked_faces = marked_faces_;
+  scene_frame.marked_vertices = pins;
+  scene_frame.hover = hover;
+  scene_frame.view = state_.view;
+  scene_frame.strain_range = kStrainRange;
+  renderer_.draw(scene_frame, camera_, width, height, picture_.framebuffer());
+}
+
+void Viewer::show_frame() {
+  const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
+  const double factor = static_cast<double>(width) / window_.width();
+  if (want_screenshot_) take_screenshot();
+  show_picture(picture_, 0, height, static_cast<int>(view_.x * factor), 0, picture_.width(),
+               picture_.height());
+  ui_.paint(width, height, 0);
+  window_.show();
+}
+
+/// The same frame once more, into a picture of its own: what a window shows may be covered by
+/// other windows.
+void Viewer::take_screenshot() {
+  want_screenshot_ = false;
+  const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
+  Target target(Target::Kind::bytes);
+  target.resize(width, height);
+  clear_picture(target.framebuffer(), 0, 0, 0);
+  const double left = view_.x * static_cast<double>(width) / window_.width();
+  show_picture(picture_, target.framebuffer(), height, static_cast<int>(left), 0, picture_.width(),
+               picture_.height());
+  ui_.paint(width, height, target.framebuffer());
+  const std::string path = free_name("icloth", ".png");
+  try {
+    write_png(path, read_picture(target));
+    tell("Picture saved to " + path);
+  } catch (const InputError& error) {
+    tell(error.what());
+  }
+}
+
+std::vector<HandleState> Viewer::handle_states() const {
+  const PublishedState& state = session_->state();
+  std::vector<HandleState> list;
+  for (const Handle& handle : drag_.handles()) {
+    HandleState shown_handle{handle.id, hit_point(handle), handle.target, 0};
+    for (const HandleState& held : state.handles) {
+      if (held.handle == handle.id) shown_handle.saturation = held.saturation;
+    }
+    list.push_back(shown_handle);
+  }
+  for (const HandleState& held : state.handles) {
+    if (held.handle >= kFirstScriptedHandle) list.push_back(held);
+  }
+  return list;
+}
+
+Vec3d Viewer::hit_point(const Handle& handle) const {
+  const auto& positions = session_->state().positions;
+  const Triangle& face = world_.face[static_cast<std::size_t>(handle.face)];
+  const double weights[] = {handle.barycentric.x, handle.barycentric.y, handle.barycentric.z};
+  Vec3d point{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    point += weights[k] * convert<double>(positions[static_cast<std::size_t>(face[k])]);
+  }
+  return point;
+}
+
+/// Faces to show in red: those that cross at the start, or those around the offending elements.
+std::vector<Index> Viewer::failing_faces() const {
+  std::vector<Index> faces;
+  if (!session_->state().failed) return faces;
+  for (const IntersectingFaces& pair : start_intersections_) {
+    faces.push_back(pair.a);
+    faces.push_back(pair.b);
+  }
+  const auto contains = [](const Triangle& face, std::span<const Index> vertices) {
+    return std::ranges::all_of(vertices, [&](Index v) { return std::ranges::count(face, v) > 0; });
+  };
+  for (Index f = 0; f < world_.faces; ++f) {
+    const Triangle& face = world_.face[static_cast<std::size_t>(f)];
+    for (const OffendingPair& pair : session_->state().report.offending) {
+      const std::span<const Index> all(pair.vertices);
+      const std::size_t first = pair.edge_edge ? 2 : 1;
+      if (contains(face, all.first(first)) || contains(face, all.subspan(first))) {
+        faces.push_back(f);
+        break;
+      }
+    }
+  }
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+void Viewer::tell(const std::string& note) {
+  note_ = note;
+  note_end_ = window_.seconds() + kNoteSeconds;
+}
+
+std::string Viewer::free_name(const char* stem, const char* extension) const {
+  for (int k = 1;; ++k) {
+    char number[24];
+    std::snprintf(number, sizeof number, "_%04d", k);
+    const std::filesystem::path folder =
+        options_.screenshot_folder.empty() ? "." : options_.screenshot_folder;
+    const std::filesystem::path path = folder / (stem + std::string(number) + extension);
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return path.lexically_normal().string();
+  }
+}
+
+StatusFigures Viewer::figures() const {
+  StatusFigures figures;
+  figures.device = std::string(build_name(options_.build));
+  if (options_.build != Build::cuda32) {
+    figures.device += threads_ == 1 ? ", 1 thread" : ", " + std::to_string(threads_) + " threads";
+  }
+  figures.vertex_way = renderer_.vertex_way();
+  figures.ui_fps = static_cast<double>(frame_times_.size());
+  if (window_.seconds() < note_end_) figures.note = note_;
+  return figures;
+}
+
+TestStatus Viewer::test_status() const {
+  const PublishedState& state = session_->state();
+  TestStatus status;
+  status.step = state.step;
+  status.time = state.time;
+  status.penetrations = state.report.impacts_left;
+  status.max_speed = state.report.max_speed;
+  status.ui_fps = static_cast<double>(frame_times_.size());
+  status.steps_per_second = state.steps_per_second;
+  status.handles = static_cast<int>(drag_.handles().size());
+  for (const Handle& handle : drag_.handles()) status.parked += handle.parked;
+  status.playing = state.playing;
+  status.failed = state.failed;
+  status.panels = state_.panels;
+  status.view = {view_.x, view_.y, view_.width, view_.height};
+  const std::vector<Vec3d> points = cloth_points();
+  for (const Vec3d p : points) status.mean += (1.0 / static_cast<double>(points.size())) * p;
+  const Projected centre =
+      camera_.project(status.mean, static_cast<int>(view_.width), static_cast<int>(view_.height));
+  status.cloth_x = view_.x + centre.x;
+  status.cloth_y = view_.y + centre.y;
+  status.cloth_visible = in_view(status.cloth_x, status.cloth_y) &&
+                         pick_at(status.cloth_x, status.cloth_y).reachable();
+  return status;
+}
+
+}  // namespace icloth

@@ -1,0 +1,121 @@
+// The interactive window: what the user does goes to camera, hands and session; what the session
+// publishes is drawn. One frame of the screen is one call of frame().
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/bindings.h"
+#include "app/drag.h"
+#include "app/imgui_gl.h"
+#include "app/panels/panel.h"
+#include "app/parameter_edits.h"
+#include "app/session.h"
+#include "app/test_status.h"
+#include "app/verbs/view.h"
+#include "app/window.h"
+#include "render/camera.h"
+#include "render/gl_targets.h"
+#include "render/pick.h"
+#include "render/renderer.h"
+#include "sim/intersections.h"
+#include "sim/world.h"
+
+namespace icloth {
+
+class Viewer {
+ public:
+  /// Opens the window and builds the solver. Throws DeviceError and InputError.
+  Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene);
+
+  /// Until the window is closed. Writes the recording when the options ask for it.
+  void run();
+
+ private:
+  /// What the pointer does to the camera while a button is held.
+  enum class Gesture { none, orbit, pan, dolly };
+
+  // One frame, in this order (viewer.cpp).
+  void frame();
+  void take_state();
+  void hand_over();
+  void draw_scene();
+  void draw_panels();
+  void show_frame();
+  void take_screenshot();
+
+  // Input (viewer_input.cpp).
+  void handle(const WindowEvent& event);
+  void press(const WindowEvent& event);
+  void release(const WindowEvent& event);
+  void move(const WindowEvent& event);
+  void wheel(const WindowEvent& event);
+  void act(Action action, double amount = 0);
+  bool act_on_camera(Action action, double amount);
+  bool act_on_hands(Action action, double amount);
+  bool act_on_session(Action action);
+  void cancel();
+  void frame_box(const std::vector<Vec3d>& points);
+  void frame_selection();
+  void look_at_failure();
+  void draw_menu();
+
+  // What is where.
+  bool in_view(double x, double y) const;
+  Ray ray(double x, double y) const;
+  CursorRay cursor_ray() const;
+  Pick pick_at(double x, double y) const;
+  int handle_at(double x, double y) const;
+  std::vector<HandleState> handle_states() const;
+  Vec3d hit_point(const Handle& handle) const;
+  std::vector<Vec3d> cloth_points() const;
+  std::vector<Index> failing_faces() const;
+  void update_hover();
+
+  void tell(const std::string& note);
+  std::string free_name(const char* stem, const char* extension) const;
+  StatusFigures figures() const;
+  TestStatus test_status() const;
+
+  ViewOptions options_;
+  std::shared_ptr<const Scene> scene_;
+  World world_;
+  std::vector<IntersectingFaces> start_intersections_;
+  Window window_;
+  Ui ui_;
+  Renderer renderer_;
+  Target picture_{Target::Kind::bytes};
+  bool software_;  ///< OpenGL runs on the processor
+  int threads_;
+  std::unique_ptr<Session> session_;
+  ParameterEdits edits_;
+  StageHistory stages_;
+  Drag drag_;
+  Camera camera_;
+  UiState state_;
+  TestStatusFile test_file_;
+
+  Rect view_;               ///< of the 3D picture [logical pixels]
+  double x_ = -1, y_ = -1;  ///< pointer
+  bool pointer_inside_ = false;
+  Gesture gesture_ = Gesture::none;
+  int gesture_button_ = 0;
+  double press_x_ = 0, press_y_ = 0, press_time_ = -1;
+  std::optional<Vec3d> hover_;  ///< cloth under the pointer [m]
+  Pick menu_pick_;
+  int menu_handle_ = 0;
+  bool open_menu_ = false, want_screenshot_ = false;
+  bool dirty_ = true, hover_stale_ = true;
+  std::uint64_t seen_rewinds_ = 0, seen_notes_ = 0;
+  bool seen_failure_ = false;
+  std::vector<Index> marked_faces_;
+  std::string note_;
+  double note_end_ = 0, last_status_ = -1;
+  std::deque<double> frame_times_;  ///< of the last second
+};
+
+}  // namespace icloth

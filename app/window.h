@@ -1,0 +1,69 @@
+// A window with an OpenGL context and the input it received. GLFW stays behind it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/gl_context.h"
+
+struct GLFWwindow;
+
+namespace icloth {
+
+/// One thing that happened, in the order it happened. Positions are logical window pixels from
+/// the top left corner.
+struct WindowEvent {
+  enum class Kind { press, release, move, wheel, key, leave };
+  Kind kind = Kind::move;
+  int code = 0;         ///< button or key, see bindings.h
+  int modifiers = 0;    ///< bits of modifier::
+  double x = 0, y = 0;  ///< pointer
+  double amount = 0;    ///< wheel notches, up is positive
+  double time = 0;      ///< [s]
+};
+
+class Window : public GlContext {
+ public:
+  /// Opens the window and makes its context current, functions loaded. Throws DeviceError when
+  /// there is no display or no OpenGL 4.5 core; the message says what to do instead.
+  Window(const std::string& title, int width, int height);
+  ~Window() override;
+
+  void make_current() override;
+  std::string origin() const override { return "window (GLFW)"; }
+
+  bool should_close() const;
+  void request_close();
+  /// Handles what arrived and returns it.
+  std::vector<WindowEvent> poll();
+  /// Shows the frame, not more often than the display.
+  void show();
+  void toggle_full_screen();
+
+  int width() const { return width_; }  ///< logical pixels
+  int height() const { return height_; }
+  int framebuffer_width() const { return framebuffer_width_; }
+  int framebuffer_height() const { return framebuffer_height_; }
+  bool minimised() const;
+  /// 1 at 96 dots per inch.
+  float content_scale() const;
+  double seconds() const;  ///< since the window opened
+  void set_clipboard(const std::string& text);
+  std::string clipboard() const;
+  GLFWwindow* handle() const { return window_; }
+
+ private:
+  void update_size();
+  void install_callbacks();
+  void add(WindowEvent event);
+
+  GLFWwindow* window_ = nullptr;
+  std::vector<WindowEvent> events_;
+  double x_ = 0, y_ = 0;
+  int modifiers_ = 0;
+  int width_ = 0, height_ = 0, framebuffer_width_ = 0, framebuffer_height_ = 0;
+  int restore_[4] = {0, 0, 0, 0};                      ///< place and size before full screen
+  double frame_interval_ = 1.0 / 60, next_frame_ = 0;  ///< [s]
+};
+
+}  // namespace icloth

@@ -1,0 +1,65 @@
+// Edits of parameters can be undone, and reach the solver in order.
+#include "app/parameter_edits.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace icloth {
+namespace {
+
+const ParameterInfo& row(const char* name) { return *find_parameter(name); }
+
+TEST(parameter_edits, clamps_rounds_and_marks) {
+  ParameterEdits edits{Parameters{}};
+  const ParameterInfo& mu = row("impact_zones.penalty");
+  const ParameterInfo& rounds = row("impact_zones.max_rounds");
+  EXPECT_FALSE(edits.changed(mu));
+  edits.set(mu, 1e30);
+  EXPECT_DOUBLE_EQ(edits.value(mu), mu.maximum);
+  EXPECT_TRUE(edits.changed(mu));
+  edits.set(rounds, 12.4);
+  EXPECT_EQ(edits.values().max_rounds, 12);
+  edits.set(mu, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_DOUBLE_EQ(edits.value(mu), mu.maximum);
+  edits.reset(mu);
+  EXPECT_FALSE(edits.changed(mu));
+}
+
+TEST(parameter_edits, one_gesture_is_undone_at_once) {
+  ParameterEdits edits{Parameters{}};
+  const ParameterInfo& gravity = row("gravity.y");
+  const double start = edits.value(gravity);
+  edits.set(gravity, -5);
+  edits.set(gravity, -4, true);
+  edits.set(gravity, -3, true);
+  edits.set(gravity, -1);
+  EXPECT_TRUE(edits.undo());
+  EXPECT_DOUBLE_EQ(edits.value(gravity), -3);
+  EXPECT_TRUE(edits.undo());
+  EXPECT_DOUBLE_EQ(edits.value(gravity), start);
+  EXPECT_FALSE(edits.undo());
+  EXPECT_TRUE(edits.redo());
+  EXPECT_TRUE(edits.redo());
+  EXPECT_FALSE(edits.redo());
+  EXPECT_DOUBLE_EQ(edits.value(gravity), -1);
+  EXPECT_TRUE(edits.undo());
+  edits.set(row("wind.x"), 3);
+  EXPECT_FALSE(edits.redo()) << "a new edit forgets what was undone";
+}
+
+TEST(parameter_edits, hands_over_the_newest_values_in_order) {
+  ParameterEdits edits{Parameters{}};
+  edits.set(row("wind.x"), 1);
+  edits.set(row("wind.x"), 2, true);
+  edits.set(row("wind.y"), 3);
+  edits.undo();
+  const auto changes = edits.take_changes();
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0], (std::pair<std::string, double>{"wind.x", 2}));
+  EXPECT_EQ(changes[1], (std::pair<std::string, double>{"wind.y", 0}));
+  EXPECT_TRUE(edits.take_changes().empty());
+}
+
+}  // namespace
+}  // namespace icloth
