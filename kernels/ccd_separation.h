@@ -44,10 +44,10 @@ ICLOTH_HD VolumeVectors<To> volume_vectors(const CcdQuery<T>& q) {
           difference(q.p1[3], q.p1[c0]), difference(q.p1[p], q.p1[o])};
 }
 
-/// True when a coordinate axis separates the primitives at both ends, hence always. Exact: the sign
-/// of the difference of two floating-point numbers is.
+/// True when a coordinate axis separates the primitives by more than `margin` at both ends, hence
+/// always. Exact for a margin of 0: the sign of the difference of two floating-point numbers is.
 template <PairKind K, class T>
-ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1) {
+ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1, T margin) {
   Vec3<T> least = r0[0], most = r0[0];
   const auto include = [&](Vec3<T> r) {
     least = {detail::smaller(least.x, r.x), detail::smaller(least.y, r.y),
@@ -59,8 +59,8 @@ ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1) {
     include(r0[i]);
     include(r1[i]);
   }
-  return detail::larger(least.x, detail::larger(least.y, least.z)) > T(0) ||
-         detail::smaller(most.x, detail::smaller(most.y, most.z)) < T(0);
+  return detail::larger(least.x, detail::larger(least.y, least.z)) > margin ||
+         detail::smaller(most.x, detail::smaller(most.y, most.z)) < -margin;
 }
 
 /// All differences in N (double or DoubleDouble) at both ends.

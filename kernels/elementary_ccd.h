@@ -33,22 +33,64 @@ inline constexpr int kMaxSteps = 100;
 
 namespace detail {
 
+/// Not a number, infinite, or so large that a determinant could overflow.
+template <PairKind K, class T>
+ICLOTH_HD bool out_of_range(const Vec3<T>* r0, const Vec3<T>* r1) {
+  T sum{};
+  for (int i = 0; i < kDifferences<K>; ++i) {
+    sum += std::fabs(r0[i].x) + std::fabs(r0[i].y) + std::fabs(r0[i].z) + std::fabs(r1[i].x) +
+           std::fabs(r1[i].y) + std::fabs(r1[i].z);
+  }
+  return !(sum < (sizeof(T) == 4 ? T(1e12) : T(1e90)));
+}
+
+}  // namespace detail
+
+/// Cheap test in the precision of the input: false when the pair certainly does not touch in [0,1],
+/// true when it may (also for numbers that are not finite). No division, no iteration. With the
+/// `separation` of the full test it keeps what that test may report.
+template <PairKind K, class T>
+ICLOTH_HD bool ccd_filter(const CcdQuery<T>& query, double separation = 0) {
+  constexpr int n = kDifferences<K>;
+  Vec3<T> r0[n], r1[n];
+  for (int i = 0; i < n; ++i) {
+    r0[i] = point_difference<K, T>(query.p0, i);
+    r1[i] = point_difference<K, T>(query.p1, i);
+  }
+  if (detail::out_of_range<K>(r0, r1)) return true;
+  if (separated_by_axis<K>(r0, r1, static_cast<T>(separation))) return false;
+  return !volume_cubic(volume_vectors<K, T>(query)).certainly_nonzero();
+}
+
+namespace detail {
+
+/// Directions that separate for a shorter time than this come from gaps full of rounding errors.
+inline constexpr double kShort = 0x1p-30;
+
 /// Where the front stopped (`time` > 1: it passed), and what moved it there.
 template <class N>
 struct Front {
   N time;
-  Vec3<N> last{};     // direction that separated the pair …
-  N last_end{};       // … up to this time
   N w[4]{};           // weights of the closest points at `time`
   bool clear{false};  // a plain crossing in the interior of both primitives
+  // The side the pair comes from, told by the last step that took longer than kShort:
+  N since{};       // where that step started
+  double side{};   // sign of the volume on it, or 0:
+  Vec3<N> last{};  // a direction that separated the pair on it
 };
+
+/// Sign of f for certain, or 0.
+template <class N>
+ICLOTH_HD double certain_sign(const Bernstein3<N>& f, N t) {
+  const N value = f(t);
+  return value > f.error ? 1 : value < -f.error ? -1 : 0;
+}
 
 /// f changes its sign for certain within a short time around t.
 template <class N>
 ICLOTH_HD bool crosses_at(const Bernstein3<N>& f, N t) {
   const N near = N(0x1p-38);
-  const N before = f(larger(t - near, N(0))), after = f(smaller(t + near, N(1)));
-  return (before > f.error && after < -f.error) || (before < -f.error && after > f.error);
+  return certain_sign(f, larger(t - near, N(0))) * certain_sign(f, smaller(t + near, N(1))) < 0;
 }
 
 template <PairKind K, class N>
@@ -56,8 +98,13 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
                        Front<N>& front) {
   const N least_step = N(64) * kRoundoff<N>;  // less than this is no progress
   for (int step = 0; step < kMaxSteps; ++step) {
-    front.time = first_zero_bound(f, front.time);
+    const N start = front.time;
+    front.time = first_zero_bound(f, start);
     if (front.time > N(1)) return;
+    if (front.time - start > N(kShort)) {
+      front.since = start;
+      front.side = certain_sign(f, start);
+    }
     const ClosestPair<N> closest = closest_pair(pair, front.time);
     for (int k = 0; k < 4; ++k) front.w[k] = closest.w[k];
     front.clear = !closest.doubtful && crosses_at(f, front.time);
@@ -71,10 +118,13 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
     }
     if (end < needed) end = separated_by_axes_until(pair, margin, front.time, direction);
     if (end < needed) return;
+    if (end - front.time > N(kShort)) {
+      front.since = front.time;
+      front.side = 0;
+      front.last = direction;
+    }
     front.time = end;
     if (end > N(1)) return;
-    front.last = direction;
-    front.last_end = end;
   }
 }
 
@@ -89,55 +139,28 @@ ICLOTH_HD Vec3d weighted_gap(const double* w, const Vec3d* r) {
   return gap;
 }
 
-/// The volume somewhere between 0 and the contact; 0 when it vanishes within rounding throughout.
-ICLOTH_HD inline double side_before(const Bernstein3<double>& f, double toi) {
-  if (std::fabs(f.c[0]) > f.error) return f.c[0];
-  double largest = 0;
-  for (int k = 1; k < 8; ++k) {
-    const double value = f(0.125 * k * toi);
-    if (std::fabs(value) > std::fabs(largest)) largest = value;
-  }
-  return std::fabs(largest) > f.error ? largest : 0.0;
-}
-
-/// Direction of the gap shortly before the contact, for pairs without a plane of contact.
-template <PairKind K>
-ICLOTH_HD Vec3d direction_before(const PairMotion<K, double>& pair, double toi) {
-  const double t = 0.95 * toi;
-  const ClosestPair<double> closest = closest_pair(pair, t);
-  Vec3d r[kDifferences<K>];
-  for (int i = 0; i < kDifferences<K>; ++i) r[i] = pair.at(t, i);
-  return normalized(weighted_gap<K>(closest.w, r));
-}
-
-/// `last`: unit direction that separated the pair shortly before the contact, or zero.
+/// Unit normal at the contact, on the side the pair comes from.
 template <PairKind K>
 ICLOTH_HD Vec3d contact_normal(const PairMotion<K, double>& pair, const VolumeVectors<double>& v,
-                               const Bernstein3<double>& f, const CcdHit& hit, Vec3d last) {
-  const double t = hit.toi;
+                               const Front<double>& front) {
+  const double t = front.time;
   const Vec3d b = (1 - t) * v.b0 + t * v.b1, c = (1 - t) * v.c0 + t * v.c1, n = cross(b, c);
-  // The volume is n·gap and keeps its sign up to the contact: its sign at the start tells the side.
-  const double side = side_before(f, t);
-  if (side != 0 && norm2(n) > 1e-16 * norm2(b) * norm2(c)) return normalized(side > 0 ? n : -n);
-  if (norm2(last) > 0) return last;
-  const Vec3d before = direction_before(pair, t);
-  if (norm2(before) > 0) return before;
+  const bool plane = norm2(n) > 1e-16 * norm2(b) * norm2(c);
+  // The volume is n·gap, and its sign just before the contact is certain.
+  if (front.side != 0 && plane) return normalized(front.side * n);
+  if (front.side == 0 && norm2(front.last) > 0) return normalized(front.last);
+  // Parallel edges or a sliver: direction of the gap shortly before.
+  const double before = t - 0.05 * (t - front.since);
+  const ClosestPair<double> closest = closest_pair(pair, before);
+  Vec3d r[kDifferences<K>];
+  for (int i = 0; i < kDifferences<K>; ++i) r[i] = pair.at(before, i);
+  const Vec3d gap = normalized(weighted_gap<K>(closest.w, r));
+  if (t - front.since > kShort && norm2(gap) > 0) return gap;
   // In touch from the start, no side known: oppose the relative motion.
-  const Vec3d motion = weighted_gap<K>(hit.w, pair.r1) - weighted_gap<K>(hit.w, pair.r0);
-  const Vec3d any = norm2(n) > 0 ? normalized(n) : normalized(-motion);
+  const Vec3d motion = weighted_gap<K>(front.w, pair.r1) - weighted_gap<K>(front.w, pair.r0);
+  const Vec3d any = normalized(plane ? n : -motion);
   if (!(norm2(any) > 0)) return {0, 1, 0};
   return dot(any, motion) > 0 ? -any : any;
-}
-
-/// Not a number, infinite, or so large that a determinant could overflow.
-template <PairKind K, class T>
-ICLOTH_HD bool out_of_range(const Vec3<T>* r0, const Vec3<T>* r1) {
-  T sum{};
-  for (int i = 0; i < kDifferences<K>; ++i) {
-    sum += std::fabs(r0[i].x) + std::fabs(r0[i].y) + std::fabs(r0[i].z) + std::fabs(r1[i].x) +
-           std::fabs(r1[i].y) + std::fabs(r1[i].z);
-  }
-  return !(sum < (sizeof(T) == 4 ? T(1e12) : T(1e90)));
 }
 
 template <PairKind K>
@@ -148,65 +171,56 @@ ICLOTH_HD CcdHit undecidable() {
 
 /// Moves a front that fp64 stopped on; true when the contact stands.
 template <PairKind K>
-ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, Front<double>& front) {
+ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, bool coplanar,
+                       Front<double>& front) {
   const PairMotion<K, DoubleDouble> pair(query);
   const Bernstein3<DoubleDouble> f(volume_cubic(volume_vectors<K, DoubleDouble>(query)));
   Front<DoubleDouble> fine{front.time};
+  fine.since = front.time;
   advance(pair, f, margin, fine);
   if (fine.time > DoubleDouble(1)) return false;
+  if (coplanar) return true;  // with directions in the plane, not with what rounding made of it
   front.time = fine.time.hi;
   if (fine.time.lo < 0) front.time *= 1 - 0x1p-52;  // rounds down
   for (int k = 0; k < 4; ++k) front.w[k] = fine.w[k].hi;
-  if (fine.last_end > DoubleDouble(0)) {
+  if (fine.side != 0 || norm2(rounded(fine.last)) > 0) {
+    front.since = fine.since.hi;
+    front.side = fine.side;
     front.last = rounded(fine.last);
-    front.last_end = fine.last_end.hi;
   }
   return true;
 }
 
 template <PairKind K, class T>
 ICLOTH_HD bool elementary_ccd(const CcdQuery<T>& query, double separation, CcdHit& hit) {
+  // In single precision first: fp64 is slow on most GPUs.
+  if (sizeof(T) == 4 && !ccd_filter<K>(query, separation)) return false;
   const PairMotion<K, double> pair(query);
   if (out_of_range<K>(pair.r0, pair.r1)) {
     hit = undecidable<K>();
     return true;
   }
-  if (separated_by_axis<K>(pair.r0, pair.r1)) return false;
+  if (separated_by_axis<K>(pair.r0, pair.r1, separation)) return false;
   const VolumeVectors<double> volume = volume_vectors<K, double>(query);
   const VolumeCubic<double> cubic = volume_cubic(volume);
   if (cubic.certainly_nonzero()) return false;
 
   const Bernstein3<double> f(cubic);
-  const double margin = f.vanishes() ? separation : 0;
+  const bool coplanar = f.vanishes();
+  const double margin = coplanar ? separation : 0;
   Front<double> front{0};
   advance(pair, f, margin, front);
   if (front.time > 1) return false;
   if constexpr (sizeof(T) == 8) {
-    if (!front.clear && !confirm<K>(query, margin, front)) return false;
+    if (!front.clear && !confirm<K>(query, margin, coplanar, front)) return false;
   }
   hit.toi = front.time;
   for (int k = 0; k < 4; ++k) hit.w[k] = front.w[k];
-  const Vec3d last = front.last_end > 0.95 * front.time ? normalized(front.last) : Vec3d{};
-  hit.normal = contact_normal(pair, volume, f, hit, last);
+  hit.normal = contact_normal(pair, volume, front);
   return true;
 }
 
 }  // namespace detail
-
-/// Cheap test in the precision of the input: false when the pair certainly does not touch in [0,1],
-/// true when it may (also for numbers that are not finite). No division, no iteration.
-template <PairKind K, class T>
-ICLOTH_HD bool ccd_filter(const CcdQuery<T>& query) {
-  constexpr int n = kDifferences<K>;
-  Vec3<T> r0[n], r1[n];
-  for (int i = 0; i < n; ++i) {
-    r0[i] = point_difference<K, T>(query.p0, i);
-    r1[i] = point_difference<K, T>(query.p1, i);
-  }
-  if (detail::out_of_range<K>(r0, r1)) return true;
-  if (separated_by_axis<K>(r0, r1)) return false;
-  return !volume_cubic(volume_vectors<K, T>(query)).certainly_nonzero();
-}
 
 /// Vertex against face. On true, `hit` holds the first contact. `separation` [length] is the gap
 /// below which pairs that stay coplanar throughout count as touching; 0: only what touches.
