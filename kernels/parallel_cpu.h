@@ -16,6 +16,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "kernels/task_fence.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
 
@@ -42,10 +44,16 @@ template <class Body>
 void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
   if (n <= 0) return;
   if (n < serial_below) return body(Index{0}, n);
+  TaskFence fence;
+  const auto task = [&body, &fence](const tbb::blocked_range<Index>& r) {
+    fence.task_begins();
+    body(r.begin(), r.end());
+    fence.task_ends();
+  };
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)),
-                      [&body](const tbb::blocked_range<Index>& r) { body(r.begin(), r.end()); });
+    tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)), task);
   });
+  fence.all_waited_for();
 }
 
 /// body(chunk, first, last) for chunks of fixed size.

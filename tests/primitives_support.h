@@ -18,7 +18,12 @@
 namespace icloth::ICLOTH_BUILD {
 
 /// Around the sizes of warps, chunks and blocks, and one where all threads have work.
-inline const std::vector<Index> kSizes = {0, 1, 31, 32, 33, 1023, 1025, 1'000'000};
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+inline constexpr Index kLargest = 100'000;  // their programs are some 20 times slower
+#else
+inline constexpr Index kLargest = 1'000'000;
+#endif
+inline const std::vector<Index> kSizes = {0, 1, 31, 32, 33, 1023, 1025, kLargest};
 
 /// A well-mixed 64-bit number for each i (finalizer of SplitMix64).
 ICLOTH_HD inline std::uint64_t mixed(std::uint64_t i) {
