@@ -39,21 +39,15 @@ ICLOTH_HD HullCut<T> cut_hull(const T* c, T level) {
 /// a time just before it gets there.
 template <class T>
 ICLOTH_HD T monotone_zero_bound(const Bernstein3<T>& f, T sign, T low, T high) {
-  const T tiny = T(16) * kRoundoff<T>;
-  const auto height = [&](T t) { return sign * f(t) - f.error; };
   T t = low;
-  for (int iteration = 0; iteration < 60 && high - low > tiny; ++iteration) {
-    const T value = height(t);
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    // Aim between one and two errors: still certain, and wide enough to be hit.
+    const T value = sign * f(t) - T(1.5) * f.error;
+    if (absolute(value) < T(0.5) * f.error) return t;
     (value > T(0) ? low : high) = t;
-    const T step = value / (T(3) * sign * f.slope(t));
-    T next = t - step;
-    if (!(next > low && next < high)) next = T(0.5) * (low + high);
-    if (absolute(next - t) < tiny) break;
-    t = next;
-  }
-  // Newton has converged from one side: step back to where the sign is certain.
-  for (T back = tiny; t - back > low; back = T(8) * back) {
-    if (height(t - back) > T(0)) return t - back;
+    t = t - value / (T(3) * sign * f.slope(t));
+    if (!(t > low && t < high)) t = T(0.5) * (low + high);
+    if (high - low < T(16) * kRoundoff<T>) break;
   }
   return low;
 }

@@ -14,7 +14,7 @@ namespace icloth {
 struct DoubleDouble {
   double hi{}, lo{};  // |lo| ≤ half a unit in the last place of hi
 
-  ICLOTH_HD constexpr DoubleDouble() = default;
+  constexpr DoubleDouble() = default;
   ICLOTH_HD constexpr DoubleDouble(double x) : hi(x) {}  // exact, hence implicit
   ICLOTH_HD constexpr DoubleDouble(double h, double l) : hi(h), lo(l) {}
   ICLOTH_HD constexpr explicit operator double() const { return hi; }
