@@ -84,7 +84,7 @@ void hang_by_highest(Cloth& cloth) {
   const double limit = high->y - 0.01 * (high->y - low->y);
   for (std::size_t v = 0; v < x.size(); ++v)
     if (x[v].y >= limit) cloth.pins.push_back(static_cast<Index>(v));
-  if (cloth.pins.size() * 4 < x.size()) return;
+  if (cloth.pins.size() * 2 <= x.size()) return;
   // A sheet that lies flat has no top: two far corners hold it.
   const auto along = [](Vec3d p) { return p.x + p.z; };
   const auto [a, b] = std::ranges::minmax_element(x, {}, along);

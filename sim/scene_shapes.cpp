@@ -39,7 +39,7 @@ TriangleMesh parse_funnel(const JsonValue& value) {
   object.finish();
   const double outline = 2 * (shape.top_radius + shape.cone_height + shape.pipe_length);
   const double around =
-      std::max(std::numbers::pi * (shape.top_radius + shape.bottom_radius), 8 * shape.edge);
+      std::max(std::numbers::pi * (shape.top_radius + shape.bottom_radius), 6 * shape.edge);
   if (outline * around / (shape.edge * shape.edge) > kMaxCells)
     value.refuse("a coarser edge: at most 4 million cells");
   return make_funnel(shape);

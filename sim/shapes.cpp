@@ -53,36 +53,50 @@ void add_patch(TriangleMesh& mesh, Welder& welder, Vec3d corner, Vec3d du, Vec3d
   }
 }
 
-/// Rings of `around` vertices about y through the profile's points (radius, height), every second
-/// ring shifted by half a step. A radius of 0 is a pole: one vertex.
-TriangleMesh revolve(const std::vector<Vec2d>& profile, Index around, bool closed_profile) {
+/// Vertices at equal angles about y.
+struct Ring {
+  Index first = 0, count = 1;
+  double phase = 0;  ///< angle of the first vertex [turns]
+
+  Index vertex(Index i) const { return first + i % count; }
+  /// Middle between vertices i and i + 1 [turns]; a pole never advances.
+  double middle(Index i) const { return count == 1 ? 2 : phase + (i + 0.5) / count; }
+};
+
+/// Triangles between two rings, the next one always at the ring that is behind.
+void connect(const Ring& lower, const Ring& upper, std::vector<Triangle>& faces) {
+  const Index lower_steps = lower.count == 1 ? 0 : lower.count;
+  const Index upper_steps = upper.count == 1 ? 0 : upper.count;
+  for (Index i = 0, j = 0; i < lower_steps || j < upper_steps;) {
+    const bool at_lower =
+        j == upper_steps || (i < lower_steps && lower.middle(i) < upper.middle(j));
+    if (at_lower) {
+      faces.push_back({lower.vertex(i), lower.vertex(i + 1), upper.vertex(j)});
+      ++i;
+    } else {
+      faces.push_back({lower.vertex(i), upper.vertex(j + 1), upper.vertex(j)});
+      ++j;
+    }
+  }
+}
+
+/// Rings about y through the profile's points (radius, height), vertices about `edge` apart and
+/// every second ring turned by half a step. A radius of 0 is a pole: one vertex.
+TriangleMesh revolve(const std::vector<Vec2d>& profile, double edge, bool closed_profile) {
   TriangleMesh mesh;
-  std::vector<Index> first;
-  for (std::size_t ring = 0; ring < profile.size(); ++ring) {
-    first.push_back(static_cast<Index>(mesh.positions.size()));
-    const auto [radius, height] = profile[ring];
-    const Index count = radius > 0 ? around : 1;
-    for (Index i = 0; i < count; ++i) {
-      const double angle = 2 * kPi * (i + (ring % 2 == 1 ? 0.5 : 0.0)) / around;
+  std::vector<Ring> rings;
+  for (const auto& [radius, height] : profile) {
+    Ring ring{static_cast<Index>(mesh.positions.size())};
+    if (radius > 0) ring.count = std::max<Index>(6, steps(2 * kPi * radius, edge));
+    ring.phase = rings.size() % 2 == 1 ? 0.5 / ring.count : 0;
+    for (Index i = 0; i < ring.count; ++i) {
+      const double angle = 2 * kPi * (ring.phase + static_cast<double>(i) / ring.count);
       mesh.positions.push_back({radius * std::sin(angle), height, radius * std::cos(angle)});
     }
+    rings.push_back(ring);
   }
-  const auto vertex = [&](std::size_t ring, Index i) {
-    return first[ring] + (profile[ring].x > 0 ? i % around : 0);
-  };
-  const std::size_t bands = profile.size() - (closed_profile ? 0 : 1);
-  for (std::size_t band = 0; band < bands; ++band) {
-    const std::size_t lower = band, upper = (band + 1) % profile.size();
-    // The upper vertex between the lower ones i and i+1.
-    const Index shift = lower % 2 == 1 && upper % 2 == 0 ? 1 : 0;
-    for (Index i = 0; i < around; ++i) {
-      if (profile[lower].x > 0)
-        mesh.faces.push_back({vertex(lower, i), vertex(lower, i + 1), vertex(upper, i + shift)});
-      if (profile[upper].x > 0)
-        mesh.faces.push_back(
-            {vertex(lower, i + 1), vertex(upper, i + shift + 1), vertex(upper, i + shift)});
-    }
-  }
+  for (std::size_t i = 1; i < rings.size(); ++i) connect(rings[i - 1], rings[i], mesh.faces);
+  if (closed_profile) connect(rings.back(), rings.front(), mesh.faces);
   return mesh;
 }
 
@@ -139,7 +153,6 @@ TriangleMesh make_capsule(double radius, double length, Index triangles) {
   const double area = 2 * kPi * radius * length + 4 * kPi * radius * radius;
   const double edge = std::sqrt(area / std::max<Index>(triangles, 16) * 4 / std::numbers::sqrt3);
   const double band = edge * std::numbers::sqrt3 / 2;
-  const Index around = std::max<Index>(6, steps(2 * kPi * radius, edge));
   const Index cap = std::max<Index>(2, steps(kPi / 2 * radius, band));
   std::vector<Vec2d> profile;
   for (Index i = 0; i <= cap; ++i) {
@@ -153,7 +166,7 @@ TriangleMesh make_capsule(double radius, double length, Index triangles) {
     profile.push_back(
         {i == 0 ? 0 : radius * std::sin(angle), length / 2 + radius * std::cos(angle)});
   }
-  return revolve(profile, around, false);
+  return revolve(profile, edge, false);
 }
 
 TriangleMesh make_box(Vec3d size, double edge) {
@@ -194,13 +207,7 @@ TriangleMesh make_funnel(const FunnelShape& shape) {
     const Vec2d a = corners[i], b = corners[(i + 1) % 6];
     if (std::hypot(b.x - a.x, b.y - a.y) > 0) add_profile(profile, a, b, band);
   }
-  // Rings alternate, so a closed profile needs an even number of them.
-  if (profile.size() % 2 == 1) {
-    const Vec2d middle = 0.5 * (profile[profile.size() - 1] + profile[0]);
-    profile.push_back(middle);
-  }
-  const double mean = kPi * (shape.top_radius + shape.bottom_radius);
-  return revolve(profile, std::max<Index>(8, steps(mean, shape.edge)), true);
+  return revolve(profile, shape.edge, true);
 }
 
 void subdivide(TriangleMesh& mesh, std::vector<Vec3d>& rest) {
