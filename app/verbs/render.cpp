@@ -175,6 +175,8 @@ int run_render(const RenderOptions& options) {
   frame.marked_faces = shown.marked_faces;
   frame.view = view;
   write_png(options.out, renderer.picture(frame, camera, size.width, size.height));
+  if (!options.quiet && !result.start_refused)
+    std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
   if (!options.quiet) std::printf("%s\n", options.out.c_str());
   return result.clean() ? 0 : 1;
 }
