@@ -1,6 +1,6 @@
 // The primitives on the CPU, over oneTBB. Included by kernels/parallel.h, which says what they do.
 //
-// Few elements are done by the calling thread: waking another one costs microseconds.
+// Few elements are done by the calling thread: handing work over costs about a microsecond.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -21,8 +21,8 @@
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
 
-inline constexpr Index kForEachSerialBelow = 2048;
-inline constexpr Index kForEachGrain = 512;
+inline constexpr Index kForEachSerialBelow = 1024;
+inline constexpr Index kForEachGrain = 256;
 inline constexpr Index kReduceChunk = 1024;  // fixed: it decides the rounding of a sum
 inline constexpr Index kScanChunk = 16384;
 inline constexpr Index kCompactChunk = 4096;
