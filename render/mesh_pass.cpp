@@ -12,15 +12,16 @@ struct Tint {
   Vec3f front, back;  ///< linear albedo
 };
 
-// Dyed fabrics, each clear against the others; the back of a cloth is paler.
+// Dyed fabrics, each clear against the others; the back of a cloth is paler. Red comes late:
+// markers are red.
 constexpr Tint kFabrics[] = {
-    {{0.40f, 0.035f, 0.05f}, {0.50f, 0.15f, 0.13f}},  // madder
-    {{0.035f, 0.11f, 0.27f}, {0.14f, 0.22f, 0.36f}},  // indigo
+    {{0.045f, 0.17f, 0.33f}, {0.16f, 0.29f, 0.43f}},  // woad
     {{0.62f, 0.36f, 0.06f}, {0.66f, 0.47f, 0.20f}},   // weld
-    {{0.06f, 0.20f, 0.13f}, {0.16f, 0.30f, 0.23f}},   // fir
-    {{0.26f, 0.08f, 0.24f}, {0.36f, 0.19f, 0.34f}},   // plum
-    {{0.05f, 0.29f, 0.32f}, {0.17f, 0.40f, 0.42f}},   // teal
+    {{0.07f, 0.22f, 0.14f}, {0.18f, 0.33f, 0.25f}},   // fir
+    {{0.28f, 0.08f, 0.25f}, {0.38f, 0.20f, 0.35f}},   // plum
     {{0.60f, 0.53f, 0.44f}, {0.64f, 0.59f, 0.53f}},   // linen
+    {{0.05f, 0.30f, 0.31f}, {0.17f, 0.40f, 0.41f}},   // teal
+    {{0.40f, 0.035f, 0.05f}, {0.50f, 0.15f, 0.13f}},  // madder
     {{0.55f, 0.22f, 0.13f}, {0.60f, 0.34f, 0.26f}},   // terracotta
 };
 constexpr Vec3f kMannequin{0.68f, 0.63f, 0.57f};

@@ -119,6 +119,7 @@ Renderer::Parts::Parts(const World& the_world)
   glVertexArrayVertexBuffer(overlay_array, 0, overlay_buffer, 0, sizeof(OverlayVertex));
   for (GLuint attribute : {0u, 1u}) {
     glEnableVertexArrayAttrib(overlay_array, attribute);
+    glVertexArrayAttribBinding(overlay_array, attribute, 0);
     glVertexArrayAttribFormat(overlay_array, attribute, attribute == 0 ? 3 : 4, GL_FLOAT, GL_FALSE,
                               attribute * static_cast<GLuint>(sizeof(Vec3f)));
   }
@@ -219,7 +220,7 @@ void Renderer::Parts::draw_overlay() const {
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDisable(GL_DEPTH_TEST);
-  overlay.set("opacity", 0.25f);  // a hint of what is behind the cloth
+  overlay.set("opacity", 0.35f);  // a hint of what is behind the cloth
   glDrawArrays(GL_TRIANGLES, 0, overlay_count);
   glEnable(GL_DEPTH_TEST);
   overlay.set("opacity", 1.0f);
