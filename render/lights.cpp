@@ -10,7 +10,7 @@ namespace icloth {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr Vec3d kKey{-0.55, 0.95, 0.75};
+constexpr Vec3d kKey{-0.85, 0.95, 0.55};
 constexpr double kKeyRadius = 0.09;  // of the disc, seen from the cloth [rad]
 
 double fraction(double x) { return x - std::floor(x); }

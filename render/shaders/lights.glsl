@@ -15,7 +15,9 @@ layout(std140, binding = 0) uniform Studio {
 
 const int kViewWireframe = 1, kViewStrain = 2;
 
-const vec3 kKeyColour = vec3(1.00, 0.965, 0.92) * 1.00;
-const vec3 kSkyColour = vec3(0.92, 0.96, 1.02) * 0.42;
-const vec3 kFloorBounce = vec3(0.98, 0.95, 0.92) * 0.16;
+const vec3 kKeyColour = vec3(1.00, 0.955, 0.90) * 1.22;
+const vec3 kSkyColour = vec3(0.90, 0.95, 1.03) * 0.36;
+const vec3 kFloorBounce = vec3(0.98, 0.95, 0.92) * 0.14;
 const vec3 kFillColour = vec3(1.0) * 0.05;  // from the camera, so that no side is black
+const vec3 kRimColour = vec3(0.92, 0.96, 1.0) * 0.55;  // from behind, to set folds off
+const vec3 kRim = vec3(0.592, 0.423, -0.686);

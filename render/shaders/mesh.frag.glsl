@@ -38,18 +38,22 @@ float slub(float across, float along) {
   return mix(hash(vec2(row, column)), hash(vec2(row, column + 1.0)), f);
 }
 
-// Brightness of a plain weave of threads 1.2 mm wide; fades out before it could flicker.
+// How much of a pattern is left when a pixel covers so many of its threads: it fades out before it
+// could flicker.
+float visible(vec2 threads) {
+  vec2 footprint = fwidth(threads);
+  return 1.0 - smoothstep(0.3, 0.75, max(footprint.x, footprint.y));
+}
+
+// Brightness of a plain weave: single threads 1.2 mm wide from near, uneven yarn from afar.
 float weave() {
-  vec2 t = v_thread / 0.0012;
-  vec2 footprint = fwidth(t);
-  float detail = 1.0 - smoothstep(0.25, 0.6, max(footprint.x, footprint.y));
-  if (detail <= 0.0) return 1.0;
+  vec2 t = v_thread / 0.0012, far = v_thread / 0.0045;
   float over = mod(floor(t.x) + floor(t.y), 2.0);
   vec2 c = fract(t) - 0.5;
   float across = over > 0.5 ? c.x : c.y, along = over > 0.5 ? c.y : c.x;
-  float thread = 1.0 - 1.5 * across * across - 0.7 * along * along;
-  float yarn = over > 0.5 ? slub(t.x, t.y / 40.0) : slub(t.y + 77.0, t.x / 40.0);
-  return mix(1.0, 1.1 * thread * (0.94 + 0.12 * yarn), detail);
+  float thread = 1.12 - 1.5 * across * across - 0.7 * along * along;
+  float yarn = 0.5 * (slub(far.x, far.y / 14.0) + slub(far.y + 77.0, far.x / 14.0));
+  return mix(1.0, thread, visible(t)) * (1.0 + 0.16 * visible(far) * (yarn - 0.5));
 }
 
 vec3 fabric(vec3 p, vec3 n, vec3 v, vec3 albedo) {
@@ -60,11 +64,13 @@ vec3 fabric(vec3 p, vec3 n, vec3 v, vec3 albedo) {
   // Light from behind comes through the threads, coloured by them.
   vec3 through = kKeyColour * lit * 0.30 * wrapped(-n_l, kWrap) * albedo;
   vec3 around = sky_light(p, n) + kFloorBounce * (0.5 - 0.5 * n.y) + kFillColour * n_v;
+  float grazing = (1.0 - n_v) * (1.0 - n_v);
   vec3 h = normalize(key.xyz + v);
   float n_l_up = max(n_l, 0.0);
   vec3 fibre = mix(vec3(0.7), albedo, 0.65) *
                (kKeyColour * lit * 0.8 * n_l_up * sheen(max(dot(n, h), 0.0), n_l_up, n_v) +
-                around * 0.35 * (1.0 - n_v) * (1.0 - n_v) * (1.0 - n_v));
+                around * 0.35 * grazing * (1.0 - n_v) +
+                kRimColour * grazing * max(dot(n, kRim), 0.0));
   return albedo * (diffuse + through + around) + fibre;
 }
 
@@ -72,8 +78,9 @@ vec3 body(vec3 p, vec3 n, vec3 v, vec3 albedo) {
   float n_l = dot(n, key.xyz);
   vec3 diffuse = kKeyColour * wrapped(n_l, 0.1);
   if (n_l > -0.1) diffuse *= key_light(p, n);
-  vec3 around = sky_light(p, n) + kFloorBounce * (0.5 - 0.5 * n.y) +
-                kFillColour * max(dot(n, v), 0.0);
+  float n_v = max(dot(n, v), 0.0);
+  vec3 around = sky_light(p, n) + kFloorBounce * (0.5 - 0.5 * n.y) + kFillColour * n_v +
+                kRimColour * 0.5 * (1.0 - n_v) * (1.0 - n_v) * max(dot(n, kRim), 0.0);
   return albedo * (diffuse + around);
 }
 
