@@ -88,6 +88,12 @@ struct SolveZone {
     z.slope[i] = dot(gradient, z.direction[i]);
   }
 
+  /// ω of Eq. 8 after k iterations since the last start.
+  ICLOTH_HD Real chebyshev_weight(int k, Real last) const {
+    const Real rho2 = set.rho * set.rho;
+    return k < 10 ? Real(1) : (k == 10 ? 2 / (2 - rho2) : 4 / (4 - rho2 * last));
+  }
+
   template <class Team>
   ICLOTH_HD double objective(Team& team, Index zone, double inverse_mean, Real step) const {
     const Index c0 = z.constraint_first[zone], c1 = z.constraint_first[zone + 1];
@@ -147,23 +153,24 @@ struct SolveZone {
       }
       if (step * static_cast<Real>(std::sqrt(slope)) < set.step_threshold) break;
 
-      // Chebyshev acceleration (Eq. 8); it starts again whenever the line search had to shorten.
       if (!set.chebyshev || step < 1) since_restart = 0;
-      const Real rho2 = set.rho * set.rho;
-      omega = since_restart < 10    ? Real(1)
-              : since_restart == 10 ? 2 / (2 - rho2)
-                                    : 4 / (4 - rho2 * omega);
-      ++since_restart;
+      omega = chebyshev_weight(since_restart++, omega);
       team.for_each(nv, [&](Index n) {
         const Index i = v0 + n;
         const Vec3r old = z.x[i], next = old - step * z.direction[i];
         z.x[i] = omega == 1 ? next : z.before[i] + omega * (next - z.before[i]);
+        z.direction[i] = next - z.x[i];  // leads back from the accelerated point
         z.before[i] = old;
-        z.direction[i] = Vec3r{};
       });
+      // Acceleration may overshoot where constraints switch on and off: then it starts again.
+      if (omega != 1 && !(objective(team, zone, inverse_mean, Real(0)) <= trial)) {
+        team.for_each(nv, [&](Index n) { z.x[v0 + n] += z.direction[v0 + n]; });
+        since_restart = 0;
+      }
+      objective(team, zone, inverse_mean, Real(0));  // shortfalls at the new iterate
       team.for_each(nc, [&](Index n) {
         const Index j = c0 + n;
-        z.shortfall[j] = shortfall_of(j, Real(0));
+        z.shortfall[j] = z.trial[j];
         z.multiplier[j] = std::fmax(set.penalty * z.shortfall[j] + z.multiplier[j], Real(0));
       });
       value = objective(team, zone, inverse_mean, Real(0));

@@ -208,6 +208,11 @@ struct LargestZone {
   ICLOTH_HD Index operator()(Index i) const { return first[i + 1] - first[i]; }
 };
 
+struct Correction {
+  View<const Vec3r> x, target;
+  ICLOTH_HD Real operator()(Index i) const { return norm(x[i] - target[i]); }
+};
+
 struct ZoneIterations {
   View<const ZoneResult> result;
   ICLOTH_HD Index operator()(Index i) const { return result[i].iterations; }
@@ -321,6 +326,8 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
                           results_.view()};
   for_each_team("impact_zones.solve", zones, SolveZone{arrays, settings});
 
+  largest_correction_ = reduce("impact_zones.correction", active_.size(), Real(0),
+                               Correction{x_.view(), target_.view()}, Max{});
   dirty_.resize(step.mesh.cloth_vertices);
   dirty_.fill(0);
   for_each("impact_zones.store", active_.size(),

@@ -27,6 +27,9 @@ class ImpactZones {
   /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
   void solve(StepContext& step, const Array<Impact>& impacts);
 
+  /// Largest |x1 − x*| of the last solve [m].
+  Real largest_correction() const { return largest_correction_; }
+
   /// 1 for vertices that moved in the last solve or collided before it (cloth_vertices).
   View<const std::uint8_t> dirty() const { return dirty_.view(); }
 
@@ -58,6 +61,7 @@ class ImpactZones {
   Array<Real> mass_, slope_, multiplier_, shortfall_, trial_;
   Array<ZoneResult> results_;
   Array<std::uint8_t> dirty_;
+  Real largest_correction_ = 0;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

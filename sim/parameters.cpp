@@ -26,6 +26,9 @@ constexpr ParameterInfo kTable[] = {
     {"step.max_substep_levels", "substep levels", "", &P::max_substep_levels, 0, 10, false,
      "a step that cannot be made free of penetrations is refused sooner",
      "such a step is halved more often before it is refused", "own choice: dt/64"},
+    {"step.max_travel", "travel in a substep", "edges", &P::max_travel, 0.1, 100, true,
+     "fast motion is cut into more substeps: fewer, shallower impacts",
+     "fewer substeps; impacts deeper than an edge are hard to resolve", "measured on the scarf"},
 
     {"gravity.x", "gravity x", "m/s²", &P::gravity_x, -100, 100, false, "pull towards −x",
      "pull towards +x", "Y is up"},
@@ -103,6 +106,9 @@ constexpr ParameterInfo kTable[] = {
     {"impact_zones.max_rounds", "rounds", "", &P::max_rounds, 1, 1000, true,
      "gives up sooner and halves the step", "tries longer before the step is halved",
      "own choice; the paper shows up to 200"},
+    {"impact_zones.max_correction", "largest correction", "edges", &P::max_correction, 0.1, 100,
+     true, "halves the step sooner, keeps the fabric from being torn by an impact",
+     "accepts corrections that stretch the fabric wildly", "measured on the scarf"},
 
     {"grab.stiffness", "grab stiffness", "N/m", &P::grab_stiffness, 1, 1e5, true,
      "cloth follows the hand softly", "cloth follows the hand closely, stretches more",

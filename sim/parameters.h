@@ -14,6 +14,7 @@ struct Parameters {
   // step
   double time_step = 0.01;
   int max_substep_levels = 6;
+  double max_travel = 2.0;
   // forces
   double gravity_x = 0.0, gravity_y = -9.81, gravity_z = 0.0;
   double wind_x = 0.0, wind_y = 0.0, wind_z = 0.0;
@@ -44,6 +45,7 @@ struct Parameters {
   double step_threshold = 1e-12;
   bool chebyshev = true;
   int max_rounds = 30;
+  double max_correction = 1.0;
   // hands
   double grab_stiffness = 400.0;
   double grab_radius = 0.02;

@@ -43,6 +43,11 @@ struct EndVelocity {
   }
 };
 
+struct Speed {
+  View<const Vec3r> v;
+  ICLOTH_HD Real operator()(Index i) const { return norm(v[i]); }
+};
+
 }  // namespace
 
 void Topology::upload(const World& world) {
@@ -141,6 +146,17 @@ void Solver::accept_substep(double dt) {
 }
 
 void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
+
+int Solver::travel_level() const {
+  const double speed = static_cast<double>(
+      reduce("step.speed", mesh_.vertices, Real(0), Speed{state_.v.view()}, Max{}));
+  const double reach = parameters_.max_travel * world_.median_edge;
+  int level = 0;
+  for (double travel = speed * parameters_.time_step;
+       travel > reach && level < parameters_.max_substep_levels; travel *= 0.5)
+    ++level;
+  return level;
+}
 
 void Solver::save_start() {
   start_x_.copy_from(state_.x1);

@@ -42,6 +42,8 @@ class Solver final : public Simulator {
   void report_offending(StepReport& report) const;
 
   void use_hands(std::span<const InputEvent> events);
+  /// Halvings after which no vertex is expected to travel further than allowed in a substep.
+  int travel_level() const;
   void back_to_substep_start();
   void save_start();
   void back_to_start();

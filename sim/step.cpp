@@ -11,6 +11,7 @@
 //   impacts left → refuse, halve the step and try again; penetrations are never accepted.
 
 #include <chrono>
+#include <cmath>
 
 #include "sim/solver.h"
 #include "sim/statistics.h"
@@ -54,8 +55,10 @@ bool Solver::try_substep(StepReport& report, double start, double dt) {
     if (round == parameters_.max_rounds || !parameters_.impact_zones_enabled) return false;
     ++report.rounds;
     timed(report.ms_impact_zones, [&] { impact_zones_.solve(step, ccd_.impacts()); });
-    report.finite = all_finite(state_);
-    if (!report.finite) return false;
+    // A correction of more than about an edge would tear the fabric; half the step corrects less.
+    const double correction = static_cast<double>(impact_zones_.largest_correction());
+    report.finite = std::isfinite(correction);
+    if (!(correction <= parameters_.max_correction * world_.median_edge)) return false;
   }
 }
 
@@ -70,7 +73,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     const int levels = parameters_.max_substep_levels;
     const std::int64_t whole = std::int64_t{1} << levels;
     std::int64_t done = 0;
-    int level = 0;
+    int level = travel_level();
     report.substeps = 0;
     while (done < whole && report.accepted) {
       const double dt = report.dt / static_cast<double>(std::int64_t{1} << level);
@@ -80,7 +83,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
         accept_substep(dt);
         ++report.substeps;
         done += whole >> level;
-        if (level > 0 && done % (whole >> (level - 1)) == 0) --level;
+        if (level > travel_level() && done % (whole >> (level - 1)) == 0) --level;
       } else {
         report_offending(report);
         back_to_substep_start();
