@@ -70,13 +70,12 @@ ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> 
   best.distance2 = T(INFINITY);
   // Areas of the two sub-triangles opposite to b and c, times 2|n|.
   const T w1 = dot(cross(q, e2), n), w2 = dot(cross(e1, q), n);
-  if (w1 > T(0) && w2 > T(0) && w1 + w2 < nn) {
+  const T w0 = T(1) - w1 / nn - w2 / nn;
+  if (w0 > T(0) && w1 > T(0) && w2 > T(0)) {  // false for nn = 0
     const T height = dot(q, n);
-    best = {{T(1) - w1 / nn - w2 / nn, w1 / nn, w2 / nn}, height * (height / nn), true};
-    if (best.w[0] > T(0) && nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
-    const Vec3<T> gap = q - best.w[1] * e1 - best.w[2] * e2;
-    best.distance2 = norm2(gap);
-    best.interior = best.w[0] > T(0);
+    best = {{w0, w1 / nn, w2 / nn}, height * (height / nn), true};
+    if (nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
+    best.distance2 = norm2(q - best.w[1] * e1 - best.w[2] * e2);
   }
   detail::keep_closer(best, p, a, b, 0, 1);
   detail::keep_closer(best, p, b, c, 1, 2);
