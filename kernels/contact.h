@@ -23,6 +23,7 @@ struct Contact {
 struct ContactTerm {
   Real h[6];      ///< symmetric: xx xy xz yy yz zz
   Vec3r impulse;  ///< Σ over corners with their weights
+  Index active;   ///< 0: the pair stays further apart than h and adds nothing
 };
 
 ICLOTH_HD inline Vec3r multiply(const ContactTerm& t, Vec3r v) {
@@ -30,30 +31,44 @@ ICLOTH_HD inline Vec3r multiply(const ContactTerm& t, Vec3r v) {
           t.h[2] * v.x + t.h[4] * v.y + t.h[5] * v.z};
 }
 
-/// relative: Σ w v at the start [m/s]; drift: what gravity adds to it in the step [m/s];
-/// inverse_mass: Σ w²/m of the free corners [1/kg].
-ICLOTH_HD inline ContactTerm contact_term(const Contact& c, Vec3r relative, Vec3r drift,
-                                          Real inverse_mass, Real stiffness, Real thickness,
-                                          Real dt) {
-  const Real k = stiffness * c.area;
-  const Real approach = dot(c.normal, relative);
-  const Real predicted = c.gap + dt * (approach + dot(c.normal, drift));
+/// Gap at the end of a step of relative velocity `relative` [m].
+ICLOTH_HD inline Real end_gap(const Contact& c, Vec3r relative, Real dt) {
+  return c.gap + dt * dot(c.normal, relative);
+}
+
+struct ContactLaw {
+  Real stiffness;  ///< k [N/m³]
+  Real thickness;  ///< h [m]
+  Real dt;         ///< [s]
+};
+
+/// start: Σ w v at the start of the step; end: the same at its end, expected (from gravity alone)
+/// or solved [m/s]; inverse_mass: Σ w²/m of the free corners [1/kg].
+ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law, Vec3r start,
+                                          Vec3r end, bool solved, Real inverse_mass) {
   ContactTerm t{};
-  if (!(predicted < thickness)) return t;
-  // Along the normal: dt k (h − gap − dt n·Σ w (v + Δv)).
-  const Real kn = dt * dt * k;
-  const Real push = dt * k * (thickness - c.gap) - kn * approach;
-  // Across: the drag s with which v̂ (1 − r) comes out of v̂ / (1 + s dt/m).
-  const Vec3r free = relative + drift;
-  const Vec3r slide = free - dot(c.normal, free) * c.normal;
-  const Real speed = norm(slide);
-  const Real pressure = std::fmax(dt * k * (thickness - predicted), Real(0)) /
-                        (Real(1) + kn * inverse_mass);  // impulse that the solve will find
-  const Real mass = Real(1) / inverse_mass;
-  const Real r = speed > 0 ? c.friction * pressure * inverse_mass / speed : Real(0);
-  Real drag = r < Real(0.999) ? mass * r / (1 - r) : Real(1e3) * mass;
-  if (!(speed > 0)) drag = c.friction > 0 && pressure > 0 ? Real(1e3) * mass : Real(0);
-  const Vec3r tangential = relative - approach * c.normal;
+  const Real predicted = end_gap(c, end, law.dt);
+  if (!(predicted < law.thickness)) return t;
+  t.active = 1;
+  // Along the normal: dt k a (h − gap − dt n·Σ w (v + Δv)).
+  const Real k = law.stiffness * c.area, kn = law.dt * law.dt * k;
+  const Real approach = dot(c.normal, start);
+  const Real push = law.dt * k * (law.thickness - c.gap) - kn * approach;
+  // Across: Coulomb's impulse μN as a drag. Before a solve, the drag with which the expected slide
+  // v̂ (1 − r), r = μN/(m|v̂|), comes out of v̂ / (1 + drag/m); after one, the secant μN/|v|.
+  Real normal_impulse = law.dt * k * (law.thickness - predicted);
+  if (!solved) normal_impulse /= Real(1) + kn * inverse_mass;
+  const Vec3r slide = end - dot(c.normal, end) * c.normal;
+  const Real speed = norm(slide), limit = c.friction * normal_impulse;
+  const Real mass = Real(1) / inverse_mass, stick = Real(1e3) * mass;
+  Real drag = stick;
+  if (limit < stick * speed) {
+    drag = limit / speed;
+    const Real r = drag * inverse_mass;
+    if (!solved) drag = r < Real(0.999) ? drag / (1 - r) : stick;
+  }
+  if (!(limit > 0)) drag = 0;
+  const Vec3r tangential = start - approach * c.normal;
   const Vec3r n = c.normal;
   const Real d = kn - drag;
   t.h[0] = drag + d * n.x * n.x, t.h[1] = d * n.x * n.y, t.h[2] = d * n.x * n.z;

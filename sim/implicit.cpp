@@ -145,24 +145,51 @@ struct AssembleRow {
   }
 };
 
-struct ContactTerms {
+/// Relative velocity of a contact at the end of the step: what gravity lets expect, or what the
+/// last solve has found.
+struct ContactMotion {
   View<const Contact> contacts;
-  View<const Vec3r> v;
+  View<const Vec3r> v, dv;
   View<const Real> inverse_mass;
-  View<ContactTerm> term;
   Vec3r fall_speed;
-  Real stiffness, thickness, dt;
+  bool solved;
+
+  ICLOTH_HD Vec3r end(Index i) const {
+    const Contact& c = contacts[i];
+    Vec3r sum = apply(c.s, v);
+    for (int a = 0; a < 4; ++a) {
+      const Index k = c.s.v[a];
+      if (inverse_mass[k] > 0) sum += c.s.w[a] * (solved ? dv[k] : fall_speed);
+    }
+    return sum;
+  }
+};
+
+struct ContactTerms {
+  ContactMotion motion;
+  ContactLaw law;
+  View<ContactTerm> term;
 
   ICLOTH_HD void operator()(Index i) const {
-    const Contact& c = contacts[i];
-    Vec3r drift{};
+    const Contact& c = motion.contacts[i];
     Real mobility = 0;
-    for (int a = 0; a < 4; ++a) {
-      const Real m = inverse_mass[c.s.v[a]];
-      if (m > 0) drift += c.s.w[a] * fall_speed;
-      mobility += c.s.w[a] * c.s.w[a] * m;
-    }
-    term[i] = contact_term(c, apply(c.s, v), drift, mobility, stiffness, thickness, dt);
+    for (int a = 0; a < 4; ++a) mobility += c.s.w[a] * c.s.w[a] * motion.inverse_mass[c.s.v[a]];
+    term[i] = contact_term(c, law, apply(c.s, motion.v), motion.end(i), motion.solved, mobility);
+  }
+};
+
+/// 1 where the solve contradicts what it assumed: an open contact that has closed or a closed one
+/// that now pulls, by more than a quarter of the thickness.
+struct Contradicted {
+  ContactMotion motion;
+  ContactLaw law;
+  View<const ContactTerm> term;
+
+  ICLOTH_HD Index operator()(Index i) const {
+    const Real gap = end_gap(motion.contacts[i], motion.end(i), law.dt);
+    const Real slack = Real(0.25) * law.thickness;
+    return term[i].active != 0 ? (gap > law.thickness + slack ? 1 : 0)
+                               : (gap < law.thickness - slack ? 1 : 0);
   }
 };
 
@@ -173,10 +200,12 @@ struct FinishRow {
   View<const Contact> contacts;
   View<const ContactTerm> terms;
   View<const Real> inverse_mass;
-  View<Vec3r> rhs;
+  View<const Vec3r> rhs;
+  View<Vec3r> contact_rhs;  ///< with the contacts
   View<Mat3r> inverse_diagonal;
 
   ICLOTH_HD void operator()(Index i) const {
+    contact_rhs[i] = rhs[i];
     if (!(inverse_mass[i] > 0)) {
       inverse_diagonal[i] = Mat3r{};
       return;
@@ -186,7 +215,7 @@ struct FinishRow {
       const Index entry = contact_entries[k];
       const Real w = contacts[entry / 4].s.w[entry % 4];
       const ContactTerm& t = terms[entry / 4];
-      rhs[i] += w * t.impulse;
+      contact_rhs[i] += w * t.impulse;
       const Real s = w * w;
       block += Mat3r{{s * t.h[0], s * t.h[1], s * t.h[2], s * t.h[1], s * t.h[3], s * t.h[4],
                       s * t.h[2], s * t.h[4], s * t.h[5]}};
@@ -300,27 +329,38 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   const Array<Contact>& contacts = proximity.contacts();
   assemble(step);
   contact_terms_.resize(contacts.size());
-  for_each(
-      "implicit.contact_terms", contacts.size(),
-      ContactTerms{contacts.view(), s.v.view(), s.inverse_mass.view(), contact_terms_.view(),
-                   step.dt * step.gravity(), static_cast<Real>(step.parameters.repulsion_stiffness),
-                   step.thickness(), step.dt});
-  const Incidence& incidence = proximity.incidence();
   inverse_diagonal_.resize(mesh.cloth_vertices);
-  for_each("implicit.finish_rows", mesh.cloth_vertices,
-           FinishRow{matrix_.diagonal.view(), incidence.first(), incidence.entries(),
-                     matrix_.value.view(), contacts.view(), contact_terms_.view(),
-                     s.inverse_mass.view(), rhs_.view(), inverse_diagonal_.view()});
+  contact_rhs_.resize(mesh.cloth_vertices);
   dv_.resize(mesh.cloth_vertices);
   dv_.fill(Vec3r{});
+  const Incidence& incidence = proximity.incidence();
   const SystemView system{matrix_.row_first.view(), matrix_.column.view(), matrix_.value.view(),
                           s.inverse_mass.view(),    contacts.view(),       contact_terms_.view(),
                           incidence.first(),        incidence.entries()};
-  solution_ = solver_.solve(system, inverse_diagonal_.view(), rhs_.view(), dv_.view(),
-                            step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
-  step.report.cg_iterations += solution_.iterations;
-  step.report.cg_residual = std::max(step.report.cg_residual, solution_.residual);
-  ++step.report.newton_iterations;
+  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.thickness(),
+                       step.dt};
+  ContactMotion motion{contacts.view(),          s.v.view(), dv_.view(), s.inverse_mass.view(),
+                       step.dt * step.gravity(), false};
+  // The repulsion acts one way only; which contacts close is known for certain after a solve.
+  for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
+    for_each("implicit.contact_terms", contacts.size(),
+             ContactTerms{motion, law, contact_terms_.view()});
+    for_each("implicit.finish_rows", mesh.cloth_vertices,
+             FinishRow{matrix_.diagonal.view(), incidence.first(), incidence.entries(),
+                       matrix_.value.view(), contacts.view(), contact_terms_.view(),
+                       s.inverse_mass.view(), rhs_.view(), contact_rhs_.view(),
+                       inverse_diagonal_.view()});
+    const LinearSolution solution =
+        solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
+                      step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
+    step.report.cg_iterations += solution.iterations;
+    step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
+    ++step.report.newton_iterations;
+    motion.solved = true;
+    if (reduce("implicit.contradicted", contacts.size(), Index{0},
+               Contradicted{motion, law, contact_terms_.view()}, Sum{}) == 0)
+      break;
+  }
   for_each(
       "implicit.move", mesh.cloth_vertices,
       MoveVertices{s.x0.view(), s.v.view(), dv_.view(), s.x1.view(), s.candidate.view(), step.dt});

@@ -33,8 +33,6 @@ class Implicit {
   /// Writes state.candidate and the cloth part of state.x1.
   void integrate(StepContext& step, const Proximity& proximity);
 
-  const LinearSolution& solution() const { return solution_; }
-
  private:
   void assemble(StepContext& step);
 
@@ -44,10 +42,9 @@ class Implicit {
   Array<FaceTerm> face_terms_;    ///< (cloth_faces), assemble
   Array<HingeTerm> hinge_terms_;  ///< (hinges), assemble
   Array<ContactTerm> contact_terms_;
-  Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
-  Array<Vec3r> rhs_, dv_;
+  Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
+  Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
   LinearSolver solver_;
-  LinearSolution solution_;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -66,6 +66,11 @@ struct StartResidual {
   }
 };
 
+struct Norm2 {
+  View<const Vec3r> b;
+  ICLOTH_HD double operator()(Index i) const { return dot_double(b[i], b[i]); }
+};
+
 /// x += α p, r −= α q, z = M⁻¹ r.
 struct Advance {
   Real alpha;
@@ -108,11 +113,11 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
         Sum{});
   };
 
-  q_.fill(Vec3r{});
-  Dots dots = residual();  // x = 0
-  const double bb = dots.rr;
+  const double bb = reduce("implicit.residual", n, 0.0, Norm2{b}, Sum{});
   LinearSolution solution;
   if (!(bb > 0)) return solution;
+  multiply(x);
+  Dots dots = residual();
   p_.copy_from(z_);
   constexpr int kReplaceEvery = 50;  // iterations between true residuals
   while (solution.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {

@@ -31,7 +31,8 @@ struct LinearSolution {
 
 class LinearSolver {
  public:
-  /// Solves for x (Δv); `inverse_diagonal`: block-Jacobi preconditioner (rows).
+  /// Solves for x (Δv), starting from what it holds; `inverse_diagonal`: block-Jacobi
+  /// preconditioner (rows).
   LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                        View<const Vec3r> b, View<Vec3r> x, double tolerance, int max_iterations);
 

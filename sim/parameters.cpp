@@ -81,6 +81,9 @@ constexpr ParameterInfo kTable[] = {
     {"implicit.cg_max_iterations", "CG iterations", "", &P::cg_max_iterations, 1, 20000, true,
      "bounds the time of a step, stiff cloth looks stretchy", "reaches the tolerance more often",
      "P-Cloth (Li et al. 2020)"},
+    {"implicit.contact_passes", "contact passes", "", &P::contact_passes, 1, 20, false,
+     "contacts are guessed from the velocities once; more impacts are left",
+     "contacts that close or open during the solve are found and solved again", "measured"},
 
     {"broad_phase.rebuild_interval", "tree rebuilt every", "steps", &P::rebuild_interval, 1, 1000,
      true, "tighter boxes, more time spent building", "looser boxes, more candidate pairs",

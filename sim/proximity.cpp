@@ -12,7 +12,7 @@ struct ContactMaker {
   View<const Real> inverse_mass;
   View<const Index> object;
   Index cloth_vertices;
-  Real thickness, reach, dt;
+  Real thickness, slack, reach, dt;
   Vec3r fall_speed;  ///< gravity · dt [m/s]
   Real friction_cloth, friction_obstacle;
 
@@ -53,7 +53,8 @@ struct ContactMaker {
       mobility += c.s.w[a] * c.s.w[a] * inverse_mass[i];
     }
     if (!(mobility > 0)) return false;
-    if (!(c.gap + dt * dot(c.normal, relative) < thickness)) return false;
+    // Pairs a little further apart are kept too: elastic forces may bring them together.
+    if (!(c.gap + dt * dot(c.normal, relative) < thickness + slack)) return false;
     // Near in the rest shape too: neighbours in the fabric, not layers that meet.
     const Index part = object[c.s.v[0]];
     bool same_cloth = true, touches_obstacle = false;
@@ -147,6 +148,7 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
                            mesh.object.view(),
                            mesh.cloth_vertices,
                            h,
+                           static_cast<Real>(0.25) * mesh.median_edge,
                            h + static_cast<Real>(0.5) * mesh.median_edge,
                            step.dt,
                            step.dt * step.gravity(),
