@@ -22,18 +22,34 @@ void axes(Vec3d direction, Vec3d& right, Vec3d& up) {
   up = cross(direction, right);
 }
 
-}  // namespace
+struct Box {
+  static constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  Vec3f low{kInfinite, kInfinite, kInfinite}, high{-kInfinite, -kInfinite, -kInfinite};
 
-Bounds bounds_of(std::span<const Vec3f> points) {
-  constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  Vec3f low{kInfinite, kInfinite, kInfinite}, high = -low;
-  for (const Vec3f p : points) {
+  void add(Vec3f p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  if (points.empty()) low = high = {};
-  const Vec3d a = convert<double>(low), b = convert<double>(high);
-  return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a))};
+  Bounds bounds() const {
+    if (low.x > high.x) return {};
+    const Vec3d a = convert<double>(low), b = convert<double>(high);
+    return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a))};
+  }
+};
+
+}  // namespace
+
+Bounds bounds_of(std::span<const Vec3f> points, std::size_t cloth) {
+  constexpr double kNear = 4;  // in radii of the cloth
+  Box box;
+  for (const Vec3f p : points.first(cloth)) box.add(p);
+  const Bounds near_cloth = box.bounds();
+  const double reach = kNear * near_cloth.radius;
+  for (const Vec3f p : points.subspan(cloth)) {
+    const Vec3d offset = convert<double>(p) - near_cloth.centre;
+    if (cloth == 0 || norm2(offset) < reach * reach) box.add(p);
+  }
+  return box.bounds();
 }
 
 LightSample light_sample(int i, int n) {

@@ -13,8 +13,9 @@ struct Bounds {
   double radius = 1;  ///< [m]
 };
 
-/// Of the box around the points; never smaller than a millimetre.
-Bounds bounds_of(std::span<const Vec3f> points);
+/// Around the first `cloth` points and those of the others that are near them (a floor may reach
+/// far beyond what is worth a shadow). Never smaller than a millimetre.
+Bounds bounds_of(std::span<const Vec3f> points, std::size_t cloth);
 
 /// One sample of the studio: the key light is a disc, the sky a dome. Sample i of n is the same
 /// in every picture; over all n they cover disc, dome and pixel evenly.

@@ -134,7 +134,7 @@ Renderer::Parts::~Parts() {
 
 void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width, int height) {
   vertices.upload(frame.positions);
-  bounds = bounds_of(frame.positions);
+  bounds = bounds_of(frame.positions, static_cast<std::size_t>(world.cloth_vertices));
   const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
   overlay_count = static_cast<int>(list.size());
   glNamedBufferData(overlay_buffer, static_cast<GLsizeiptr>(list.size() * sizeof(OverlayVertex)),
@@ -163,7 +163,9 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   store(block.eye, camera.eye());
   store(block.key, light.key, texel);
   store(block.dome, light.dome, dome ? texel : 0);
-  store(block.ground, {ground, bounds.centre.x, bounds.centre.z}, bounds.radius);
+  // A hair below the floor, so that an obstacle that is the floor wins.
+  store(block.ground, {ground - 1e-3 * bounds.radius, bounds.centre.x, bounds.centre.z},
+        bounds.radius);
   store(block.ray_centre, camera.forward());
   store(block.ray_right, (up * aspect) * camera.right());
   store(block.ray_up, up * camera.up());

@@ -10,5 +10,5 @@ void main() {
   vec3 sky = kSkyColour;
   if (dome.w != 0.0) sky *= 2.0 * dome.y * dome_light(v_position, up);
   vec3 share = (key_open * key_light(v_position, up) + sky) / (key_open + kSkyColour);
-  colour = vec4(mix(share, vec3(1), max(0.22, smoothstep(0.9, 2.3, v_away))), 1);
+  colour = vec4(mix(share, vec3(1), max(0.22, smoothstep(0.9, 2.05, v_away))), 1);
 }

@@ -1,6 +1,6 @@
 // A disc on the floor around the scene, as a fan.
 const int kCorners = 64;
-const float kReach = 2.4;  // radii of the scene
+const float kReach = 2.1;  // radii of the scene
 
 out vec3 v_position;
 out float v_away;  // from the centre, in radii
