@@ -99,6 +99,13 @@ std::vector<StepReport> Session::take_reports() {
   return {std::make_move_iterator(taken.begin()), std::make_move_iterator(taken.end())};
 }
 
+double Session::step_seconds() const {
+  const Clock::rep begin = step_begin_.load();
+  if (begin == 0) return 0;
+  return std::chrono::duration<double>(Clock::now().time_since_epoch() - Clock::duration(begin))
+      .count();
+}
+
 void Session::stop() {
   if (!thread_.joinable()) return;
   send(Command::stop);
@@ -255,14 +262,17 @@ void Session::advance() {
   const Clock::time_point begin = Clock::now();
   history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_, held_});
   Recording::Step step = next_step();
+  step_begin_ = begin.time_since_epoch().count();
   try {
     report_ = simulator_->step(step.events);
   } catch (const std::exception& error) {
     options_.refusal = std::string("The solver stopped: ") + error.what();
     playing_ = false;
+    step_begin_ = 0;
     fail(options_.refusal);
     return publish(true);
   }
+  step_begin_ = 0;
   for (const InputEvent& event : step.events) track(held_, event);
   recorded_parameters_ = simulator_->parameters();
   recording_.steps.push_back(std::move(step));

@@ -1,6 +1,7 @@
 // The simulation behind the window: a solver on its own thread, fed through a mailbox.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -80,6 +81,9 @@ class Session {
   /// Reports of all steps since the last call, oldest first (the newest 4096 when not asked long).
   std::vector<StepReport> take_reports();
 
+  /// How long the step in progress has been taking [s], 0 between steps.
+  double step_seconds() const;
+
   /// Ends the thread after the step in progress. The recording is complete then.
   void stop();
   /// Only after stop().
@@ -133,6 +137,7 @@ class Session {
   std::vector<Mail> mailbox_;       ///< under mutex_
   std::deque<StepReport> reports_;  ///< under mutex_, at most 4096
   TripleBuffer<PublishedState> published_;
+  std::atomic<Clock::rep> step_begin_{0};  ///< of the step in progress, 0: none
 
   // Of the solver thread alone.
   bool playing_ = false, stopping_ = false, scripted_ = false, single_ = false;

@@ -50,8 +50,8 @@ void set_colours(ImGuiStyle& style) {
   set(ImGuiCol_FrameBg, IM_COL32(38, 43, 52, 255));
   set(ImGuiCol_FrameBgHovered, IM_COL32(48, 54, 65, 255));
   set(ImGuiCol_FrameBgActive, IM_COL32(56, 63, 76, 255));
-  set(ImGuiCol_SliderGrab, IM_COL32(94, 176, 239, 210));
-  set(ImGuiCol_SliderGrabActive, colour::kAccent);
+  set(ImGuiCol_SliderGrab, IM_COL32(94, 176, 239, 130));
+  set(ImGuiCol_SliderGrabActive, IM_COL32(94, 176, 239, 200));
   set(ImGuiCol_CheckMark, colour::kAccent);
   set(ImGuiCol_Button, IM_COL32(44, 50, 61, 255));
   set(ImGuiCol_ButtonHovered, IM_COL32(58, 66, 80, 255));
@@ -59,6 +59,11 @@ void set_colours(ImGuiStyle& style) {
   set(ImGuiCol_Header, IM_COL32(33, 37, 45, 255));
   set(ImGuiCol_HeaderHovered, IM_COL32(43, 48, 58, 255));
   set(ImGuiCol_HeaderActive, IM_COL32(50, 56, 68, 255));
+  set(ImGuiCol_Tab, IM_COL32(33, 37, 45, 255));
+  set(ImGuiCol_TabHovered, IM_COL32(58, 66, 80, 255));
+  set(ImGuiCol_TabActive, IM_COL32(48, 84, 118, 255));
+  set(ImGuiCol_TabUnfocused, IM_COL32(33, 37, 45, 255));
+  set(ImGuiCol_TabUnfocusedActive, IM_COL32(48, 84, 118, 255));
   set(ImGuiCol_Separator, IM_COL32(44, 49, 59, 255));
   set(ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0));
   set(ImGuiCol_ScrollbarGrab, IM_COL32(60, 67, 80, 255));
@@ -77,7 +82,7 @@ void apply_theme(float scale) {
   style.ItemSpacing = {8, 6};
   style.ItemInnerSpacing = {6, 4};
   style.ScrollbarSize = 10;
-  style.GrabMinSize = 10;
+  style.GrabMinSize = 7;
   style.WindowBorderSize = 0;
   style.PopupBorderSize = 1;
   style.WindowRounding = 0;

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kNoteSeconds = 8, kStatusSeconds = 1;
 constexpr double kStrainRange = 0.1;
+constexpr double kRestSeconds = 0.3, kLongestPause = 0.2, kMovingSharpness = 0.5;
+constexpr Index kGraspSamples = 97;
 
 bool is_software(const std::string& renderer) {
   for (const char* name : {"llvmpipe", "softpipe", "SwiftShader"}) {
@@ -147,10 +149,25 @@ void Viewer::draw_panels() {
   state_.show_failure = state_.save_session = false;
 }
 
+/// Drawing on the processor takes tens of milliseconds and the solver's cores: then the panels and
+/// the pointer get at least as much time, what moves is drawn at half the resolution, and what
+/// has come to rest once more at the full one.
+bool Viewer::time_to_draw() {
+  const double now = window_.seconds();
+  if (dirty_) last_change_ = now;
+  if (!software_ || want_screenshot_) return dirty_ || !sharp_;
+  if (!dirty_) return !sharp_ && now - last_change_ > kRestSeconds;
+  return now - draw_end_ >= std::min(draw_seconds_, kLongestPause);
+}
+
 void Viewer::draw_scene() {
-  if (!dirty_) return;
+  if (!time_to_draw()) return;
+  const double begin = window_.seconds();
+  sharp_ = !software_ || !dirty_ || want_screenshot_;
   dirty_ = false;
-  const double factor = static_cast<double>(window_.framebuffer_width()) / window_.width();
+  const double sharpness = sharp_ ? 1 : kMovingSharpness;
+  const double factor =
+      sharpness * static_cast<double>(window_.framebuffer_width()) / window_.width();
   const int width = std::max(8, static_cast<int>(view_.width * factor));
   const int height = std::max(8, static_cast<int>(view_.height * factor));
   picture_.resize(width, height);
@@ -170,14 +187,17 @@ void Viewer::draw_scene() {
   scene_frame.view = state_.view;
   scene_frame.strain_range = kStrainRange;
   renderer_.draw(scene_frame, camera_, width, height, picture_.framebuffer());
+  if (software_) finish_drawing();
+  draw_end_ = window_.seconds();
+  draw_seconds_ = draw_end_ - begin;
 }
 
 void Viewer::show_frame() {
   const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
   const double factor = static_cast<double>(width) / window_.width();
   if (want_screenshot_) take_screenshot();
-  show_picture(picture_, 0, height, static_cast<int>(view_.x * factor), 0, picture_.width(),
-               picture_.height());
+  show_picture(picture_, 0, height, static_cast<int>(view_.x * factor), 0,
+               static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
   ui_.paint(width, height, 0);
   window_.show();
 }
@@ -190,9 +210,9 @@ void Viewer::take_screenshot() {
   Target target(Target::Kind::bytes);
   target.resize(width, height);
   clear_picture(target.framebuffer(), 0, 0, 0);
-  const double left = view_.x * static_cast<double>(width) / window_.width();
-  show_picture(picture_, target.framebuffer(), height, static_cast<int>(left), 0, picture_.width(),
-               picture_.height());
+  const double factor = static_cast<double>(width) / window_.width();
+  show_picture(picture_, target.framebuffer(), height, static_cast<int>(view_.x * factor), 0,
+               static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
   ui_.paint(width, height, target.framebuffer());
   const std::string path = free_name("icloth", ".png");
   try {
@@ -286,6 +306,28 @@ StatusFigures Viewer::figures() const {
   return figures;
 }
 
+/// A point of the cloth that is in view and nothing hides: among some faces the lowest, because
+/// hanging ends follow a hand best.
+std::optional<Vec3d> Viewer::graspable_point() const {
+  const auto& positions = session_->state().positions;
+  const int width = static_cast<int>(view_.width), height = static_cast<int>(view_.height);
+  std::optional<Vec3d> best;
+  for (Index k = 0; k < kGraspSamples; ++k) {
+    const auto f =
+        static_cast<std::size_t>(static_cast<std::int64_t>(k) * world_.cloth_faces / kGraspSamples);
+    Vec3d centre{};
+    for (const Index v : world_.face[f]) {
+      centre += (1.0 / 3) * convert<double>(positions[static_cast<std::size_t>(v)]);
+    }
+    if (best && centre.y >= best->y) continue;
+    const Projected at = camera_.project(centre, width, height);
+    if (at.depth <= 0 || !in_view(view_.x + at.x, view_.y + at.y)) continue;
+    const Pick under = pick_at(view_.x + at.x, view_.y + at.y);
+    if (under.reachable() && norm(under.point - centre) < 0.02) best = centre;
+  }
+  return best;
+}
+
 TestStatus Viewer::test_status() const {
   const PublishedState& state = session_->state();
   TestStatus status;
@@ -303,12 +345,12 @@ TestStatus Viewer::test_status() const {
   status.view = {view_.x, view_.y, view_.width, view_.height};
   const std::vector<Vec3d> points = cloth_points();
   for (const Vec3d p : points) status.mean += (1.0 / static_cast<double>(points.size())) * p;
-  const Projected centre =
-      camera_.project(status.mean, static_cast<int>(view_.width), static_cast<int>(view_.height));
-  status.cloth_x = view_.x + centre.x;
-  status.cloth_y = view_.y + centre.y;
-  status.cloth_visible = in_view(status.cloth_x, status.cloth_y) &&
-                         pick_at(status.cloth_x, status.cloth_y).reachable();
+  const std::optional<Vec3d> grasp = graspable_point();
+  status.cloth_visible = grasp.has_value();
+  const Projected at = camera_.project(grasp.value_or(status.mean), static_cast<int>(view_.width),
+                                       static_cast<int>(view_.height));
+  status.cloth_x = view_.x + at.x;
+  status.cloth_y = view_.y + at.y;
   return status;
 }
 

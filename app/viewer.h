@@ -44,6 +44,7 @@ class Viewer {
   void take_state();
   void hand_over();
   void draw_scene();
+  bool time_to_draw();
   void draw_panels();
   void show_frame();
   void take_screenshot();
@@ -78,6 +79,7 @@ class Viewer {
 
   void tell(const std::string& note);
   std::string free_name(const char* stem, const char* extension) const;
+  std::optional<Vec3d> graspable_point() const;
   StatusFigures figures() const;
   TestStatus test_status() const;
 
@@ -110,6 +112,9 @@ class Viewer {
   int menu_handle_ = 0;
   bool open_menu_ = false, want_screenshot_ = false;
   bool dirty_ = true, hover_stale_ = true;
+  double draw_seconds_ = 0, draw_end_ = 0;  ///< cost and end of the last drawing of the scene
+  double last_change_ = 0;                  ///< when the scene last had to be drawn anew
+  bool sharp_ = false;                      ///< the picture has the full resolution
   std::uint64_t seen_rewinds_ = 0, seen_notes_ = 0;
   bool seen_failure_ = false;
   std::vector<Index> marked_faces_;

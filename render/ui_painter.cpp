@@ -88,6 +88,8 @@ void show_picture(const Target& picture, unsigned framebuffer, int height, int l
                          GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
+void finish_drawing() { glFinish(); }
+
 Image read_picture(const Target& picture) {
   Image image(picture.width(), picture.height());
   std::vector<std::uint8_t> bytes(image.pixels.size());

@@ -58,6 +58,9 @@ void clear_picture(unsigned framebuffer, float red, float green, float blue);
 void show_picture(const Target& picture, unsigned framebuffer, int height, int left, int top,
                   int wide, int high);
 
+/// Waits until everything asked for so far is drawn.
+void finish_drawing();
+
 /// The finished picture as an image, rows from the top.
 Image read_picture(const Target& picture);
 

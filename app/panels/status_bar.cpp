@@ -9,6 +9,8 @@ namespace icloth {
 
 namespace {
 
+constexpr double kLongStep = 1.5;  ///< [s]
+
 void item(const char* text, ImU32 tint = colour::kText) {
   ImGui::SameLine(0, ImGui::GetFontSize() * 1.3f);
   ImGui::TextColored(vec4(tint), "%s", text);
@@ -59,9 +61,15 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
   draw_penetrations(context.state);
   item(figures.device.c_str());
   char text[64];
-  std::snprintf(text, sizeof text, "%.1f steps/s", context.state.steps_per_second);
-  item(context.state.playing ? text : "paused",
-       context.state.playing ? colour::kText : colour::kChanged);
+  const double busy = context.session.step_seconds();
+  if (busy > kLongStep) {
+    std::snprintf(text, sizeof text, "in a step for %.0f s", busy);
+    item(text, colour::kChanged);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f steps/s", context.state.steps_per_second);
+    item(context.state.playing ? text : "paused",
+         context.state.playing ? colour::kText : colour::kChanged);
+  }
   std::snprintf(text, sizeof text, "window %.0f fps", figures.ui_fps);
   item(text);
   item((thousands(context.world.cloth_faces) + " triangles").c_str());
