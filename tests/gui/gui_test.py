@@ -187,7 +187,7 @@ def check_end(window, program):
           f"{slowest[len(slowest) // 2]:.0f}, lowest {slowest[0]:.0f}")
     assert worst == 0, "penetrations were reported"
     assert slowest[len(slowest) // 2] >= LOWEST_FPS, "the window is too slow"
-    done = subprocess.run([program, "replay", window.recording, "--device", "cpu", "--quiet"],
+    done = subprocess.run([program, "replay", window.recording, "--quiet"],
                           text=True, capture_output=True, check=False)
     assert done.returncode == 0, f"the session does not repeat: {done.stdout}{done.stderr}"
 
