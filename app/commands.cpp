@@ -7,6 +7,7 @@
 #include <functional>
 #include <new>
 
+#include "app/bindings.h"
 #include "app/machine.h"
 #include "app/options.h"
 #include "app/verbs/bench.h"
@@ -29,6 +30,11 @@ namespace {
 constexpr std::string_view kVerbs[] = {"view",   "run", "render", "bench",
                                        "replay", "ccd", "check",  "info"};
 
+int print_keys() {
+  std::fputs(bindings_markdown().c_str(), stdout);
+  return 0;
+}
+
 /// What the parsed verb does; its options live here until then.
 struct Commands {
   CLI::App app{"icloth: interactive cloth simulation", "icloth"};
@@ -42,6 +48,7 @@ struct Commands {
   ReplayOptions replay;
   CheckOptions check;
   std::string ccd_queries, ccd_predictions;
+  bool list_keys = false;
 
   Commands();
   CLI::App* add_verb(const char* name, const char* what, std::function<int()> action);
@@ -161,7 +168,9 @@ void Commands::add_tests() {
                             [this] { return run_check(check); });
   verb->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
   verb->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
-  add_verb("info", "version, machine, builds, renderer", [] { return run_info(); });
+  CLI::App* info = add_verb("info", "version, machine, builds, renderer",
+                            [this] { return list_keys ? print_keys() : run_info(); });
+  info->add_flag("--keys", list_keys, "print docs/keys.md: the keys and what the mouse does");
 }
 
 Commands::Commands() {

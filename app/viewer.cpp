@@ -72,6 +72,7 @@ Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
 
 void Viewer::run() {
   while (!window_.should_close()) frame();
+  window_.hide();  // the step in progress may take a while
   session_->stop();
   if (!options_.record_file.empty()) save_recording(session_->recording(), options_.record_file);
 }
@@ -333,7 +334,8 @@ TestStatus Viewer::test_status() const {
   TestStatus status;
   status.step = state.step;
   status.time = state.time;
-  status.penetrations = state.report.impacts_left;
+  status.penetrations =
+      state.report.impacts_left + static_cast<std::int64_t>(start_intersections_.size());
   status.max_speed = state.report.max_speed;
   status.ui_fps = static_cast<double>(frame_times_.size());
   status.steps_per_second = state.steps_per_second;

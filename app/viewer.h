@@ -55,6 +55,8 @@ class Viewer {
   void release(const WindowEvent& event);
   void move(const WindowEvent& event);
   void wheel(const WindowEvent& event);
+
+  // Actions (viewer_actions.cpp).
   void act(Action action, double amount = 0);
   bool act_on_camera(Action action, double amount);
   bool act_on_hands(Action action, double amount);

@@ -138,6 +138,11 @@ bool Window::minimised() const {
          glfwGetWindowAttrib(window_, GLFW_ICONIFIED);
 }
 
+void Window::hide() {
+  glfwHideWindow(window_);
+  glfwPollEvents();
+}
+
 /// Without a display behind it (virtual screens) the swap does not wait: the clock does.
 void Window::show() {
   glfwSwapBuffers(window_);

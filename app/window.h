@@ -34,6 +34,7 @@ class Window : public GlContext {
 
   bool should_close() const;
   void request_close();
+  void hide();
   /// Handles what arrived and returns it.
   std::vector<WindowEvent> poll();
   /// Shows the frame, not more often than the display.

@@ -27,12 +27,20 @@ void draw_group(std::string_view group) {
   ImGui::Spacing();
 }
 
+std::vector<std::string_view> group_names() {
+  std::vector<std::string_view> names;
+  for (const Binding& row : binding_table()) {
+    if (names.empty() || names.back() != row.group) names.push_back(row.group);
+  }
+  return names;
+}
+
 }  // namespace
 
 void draw_help(PanelContext& context, const Rect& view) {
   if (!context.ui.help) return;
-  const float width = std::min(680 * context.scale, view.width - 24 * context.scale);
-  const float height = view.height - 24 * context.scale;
+  const float width = std::min(920 * context.scale, view.width - 24 * context.scale);
+  const float height = std::min(600 * context.scale, view.height - 24 * context.scale);
   ImGui::SetNextWindowPos({view.x + (view.width - width) / 2, view.y + 12 * context.scale});
   ImGui::SetNextWindowSize({width, height});
   ImGui::SetNextWindowBgAlpha(0.95f);
@@ -40,11 +48,15 @@ void draw_help(PanelContext& context, const Rect& view) {
   ImGui::Begin("##help", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings);
-  std::string_view group;
-  for (const Binding& row : binding_table()) {
-    if (row.group == group) continue;
-    group = row.group;
-    draw_group(group);
+  if (ImGui::BeginTable("##columns", 2)) {
+    ImGui::TableNextRow();
+    // Groups fill the left column, then the right one.
+    const std::vector<std::string_view> groups = group_names();
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      if (k == 0 || k == (groups.size() + 1) / 2) ImGui::TableNextColumn();
+      draw_group(groups[k]);
+    }
+    ImGui::EndTable();
   }
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   context.ui.overlays.push_back({at.x, at.y, size.x, size.y});

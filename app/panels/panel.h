@@ -62,6 +62,9 @@ struct StatusFigures {
 
 inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1
 
+/// Collisions that the newest step left, or pairs of faces that cross at the start.
+long long penetrations(const PanelContext& context);
+
 /// The column on the left: transport, stage plot, then tabs of parameters and statistics.
 void draw_side_panel(PanelContext& context, const Rect& place);
 void draw_transport(PanelContext& context);

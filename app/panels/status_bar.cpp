@@ -17,9 +17,9 @@ void item(const char* text, ImU32 tint = colour::kText) {
 }
 
 /// Always visible, also when the panels are hidden.
-void draw_penetrations(const PublishedState& state) {
+void draw_penetrations(const PanelContext& context) {
   char text[48];
-  const long long left = static_cast<long long>(state.report.impacts_left);
+  const long long left = penetrations(context);
   std::snprintf(text, sizeof text, "penetrations %lld", left);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = ImGui::GetFontSize() * 0.3f;
@@ -43,6 +43,11 @@ std::string thousands(long long count) {
 
 }  // namespace
 
+long long penetrations(const PanelContext& context) {
+  return static_cast<long long>(context.start_intersections.size()) +
+         static_cast<long long>(context.state.report.impacts_left);
+}
+
 void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place) {
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
@@ -58,7 +63,7 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
   } else {
     ImGui::TextColored(vec4(colour::kAccent), "%s", figures.note.c_str());
   }
-  draw_penetrations(context.state);
+  draw_penetrations(context);
   item(figures.device.c_str());
   char text[64];
   const double busy = context.session.step_seconds();

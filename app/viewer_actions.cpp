@@ -1,0 +1,267 @@
+// What the actions of the table of bindings do.
+#include <algorithm>
+#include <cmath>
+
+#include "app/camera_json.h"
+#include "app/viewer.h"
+
+namespace icloth {
+
+namespace {
+
+constexpr double kDollyPerNotch = 0.88;
+
+Vec3d picked_point(const Pick& pick) { return pick.reachable() ? pick.point : pick.obstacle_point; }
+
+}  // namespace
+
+void Viewer::act(Action action, double amount) {
+  if (act_on_hands(action, amount) || act_on_camera(action, amount) || act_on_session(action)) {
+    return;
+  }
+  switch (action) {
+    case Action::view_shaded:
+      state_.view = ViewMode::shaded;
+      break;
+    case Action::view_wireframe:
+      state_.view = ViewMode::wireframe;
+      break;
+    case Action::view_strain:
+      state_.view = ViewMode::strain;
+      break;
+    case Action::toggle_panels:
+      state_.panels = !state_.panels;
+      break;
+    case Action::help:
+      state_.help = !state_.help;
+      break;
+    case Action::full_screen:
+      window_.toggle_full_screen();
+      break;
+    case Action::screenshot:
+      want_screenshot_ = true;
+      break;
+    case Action::quit:
+      window_.request_close();
+      break;
+    default:
+      break;
+  }
+}
+
+bool Viewer::act_on_hands(Action action, double amount) {
+  const ClothHit hit{menu_pick_.face, menu_pick_.barycentric, menu_pick_.point};
+  switch (action) {
+    case Action::grab:
+      drag_.begin(cursor_ray(), hit);
+      return true;
+    case Action::grab_handle:
+      drag_.begin_handle(menu_handle_, cursor_ray(), false);
+      return true;
+    case Action::add_handle:
+      drag_.begin_handle(menu_handle_, cursor_ray(), true);
+      return true;
+    case Action::pin_point:
+      drag_.pin(hit);
+      return true;
+    case Action::unpin:
+      drag_.release(menu_handle_);
+      return true;
+    case Action::park:
+      drag_.park();
+      return true;
+    case Action::cancel:
+      cancel();
+      return true;
+    case Action::release_selected:
+      drag_.release_selected();
+      return true;
+    case Action::release_all:
+      drag_.release_all();
+      return true;
+    case Action::grab_depth:
+      drag_.change_depth(amount, cursor_ray());
+      return true;
+    case Action::grab_radius:
+      drag_.set_defaults(edits_.values().grab_radius, edits_.values().grab_stiffness);
+      drag_.change_radius(amount);
+      edits_.set(*find_parameter("grab.radius"), drag_.radius(), true);
+      tell("Size of the grabbed patch: " + std::to_string(drag_.radius()) + " m");
+      return true;
+    case Action::grab_stiffness:
+      drag_.set_defaults(edits_.values().grab_radius, edits_.values().grab_stiffness);
+      drag_.change_stiffness(amount);
+      edits_.set(*find_parameter("grab.stiffness"), drag_.stiffness(), true);
+      tell("Strength of the pull: " + std::to_string(std::lround(drag_.stiffness())) + " N/m");
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool Viewer::act_on_camera(Action action, double amount) {
+  switch (action) {
+    case Action::orbit:
+      gesture_ = Gesture::orbit;
+      break;
+    case Action::pan:
+      gesture_ = Gesture::pan;
+      break;
+    case Action::dolly_drag:
+      gesture_ = Gesture::dolly;
+      break;
+    case Action::dolly: {
+      const Pick under = pick_at(x_, y_);
+      const double factor = std::pow(kDollyPerNotch, amount);
+      if (under.hit_cloth() || under.hit_obstacle()) {
+        camera_.dolly_to(factor, picked_point(under));
+      } else {
+        camera_.dolly(factor);
+      }
+      break;
+    }
+    case Action::set_pivot:
+      if (menu_pick_.hit_cloth() || menu_pick_.hit_obstacle()) {
+        camera_.set_pivot(picked_point(menu_pick_));
+      }
+      break;
+    case Action::frame_selection:
+      frame_selection();
+      break;
+    case Action::frame_all: {
+      std::vector<Vec3d> all;
+      for (const Vec3f p : session_->state().positions) all.push_back(convert<double>(p));
+      frame_box(all);
+      break;
+    }
+    case Action::menu:
+      open_menu_ = true;
+      break;
+    case Action::copy_camera:
+      window_.set_clipboard(camera_to_json(camera_.pose()));
+      tell("The camera is in the clipboard as JSON.");
+      break;
+    case Action::paste_camera:
+      if (const auto pose = camera_from_json(window_.clipboard())) {
+        camera_ = Camera(*pose);
+      } else {
+        tell("The clipboard holds no camera.");
+      }
+      break;
+    default:
+      return false;
+  }
+  drag_.follow_camera(cursor_ray());
+  return true;
+}
+
+bool Viewer::act_on_session(Action action) {
+  switch (action) {
+    case Action::play_pause:
+      session_->state().playing ? session_->pause() : session_->play();
+      return true;
+    case Action::step:
+      session_->step_once();
+      return true;
+    case Action::step_back:
+      session_->step_back();
+      return true;
+    case Action::reset:
+      session_->reset();
+      return true;
+    case Action::undo:
+      if (!edits_.undo()) tell("There is nothing to undo.");
+      return true;
+    case Action::redo:
+      if (!edits_.redo()) tell("There is nothing to redo.");
+      return true;
+    case Action::save_session:
+      session_->save(options_.record_file.empty() ? free_name("session", ".json")
+                                                  : options_.record_file);
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Esc: the grab, then the selection, then the help. It never quits.
+void Viewer::cancel() {
+  const bool selected = std::ranges::any_of(drag_.handles(), &Handle::selected);
+  if (drag_.grabbing()) {
+    drag_.cancel();
+  } else if (selected) {
+    drag_.deselect();
+  } else {
+    state_.help = false;
+  }
+}
+
+std::vector<Vec3d> Viewer::cloth_points() const {
+  std::vector<Vec3d> points;
+  const auto& positions = session_->state().positions;
+  for (std::size_t v = 0; v < static_cast<std::size_t>(world_.cloth_vertices); ++v) {
+    points.push_back(convert<double>(positions[v]));
+  }
+  return points;
+}
+
+void Viewer::frame_box(const std::vector<Vec3d>& points) {
+  if (points.empty()) return;
+  Vec3d low = points.front(), high = low;
+  for (const Vec3d p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  camera_.frame_box(low, high,
+                    static_cast<double>(view_.width) / static_cast<double>(view_.height));
+}
+
+void Viewer::frame_selection() {
+  std::vector<Vec3d> points;
+  const Vec3d margin{0.15, 0.15, 0.15};
+  for (const Handle& handle : drag_.handles()) {
+    if (!handle.selected) continue;
+    points.push_back(handle.target - margin);
+    points.push_back(handle.target + margin);
+  }
+  frame_box(points.empty() ? cloth_points() : points);
+}
+
+void Viewer::look_at_failure() {
+  std::vector<Vec3d> points;
+  for (const Index f : marked_faces_) {
+    for (const Index v : world_.face[static_cast<std::size_t>(f)]) {
+      points.push_back(convert<double>(session_->state().positions[static_cast<std::size_t>(v)]));
+    }
+  }
+  frame_box(points);
+  dirty_ = true;
+}
+
+void Viewer::draw_menu() {
+  if (open_menu_) ImGui::OpenPopup("##menu");
+  open_menu_ = false;
+  if (!ImGui::BeginPopup("##menu")) return;
+  const bool hit = menu_pick_.hit_cloth() || menu_pick_.hit_obstacle();
+  if (menu_handle_ && ImGui::MenuItem("Release this handle")) drag_.release(menu_handle_);
+  if (ImGui::MenuItem("Pin the cloth here", "Ctrl+click", false, menu_pick_.reachable())) {
+    act(Action::pin_point);
+  }
+  if (ImGui::MenuItem("Orbit around this point", "double click", false, hit)) {
+    act(Action::set_pivot);
+  }
+  if (ImGui::MenuItem("Frame the cloth", "F")) act(Action::frame_selection);
+  if (ImGui::MenuItem("Frame everything", "Home")) act(Action::frame_all);
+  if (ImGui::MenuItem("Release all handles", "Shift+X", false, !drag_.handles().empty())) {
+    drag_.release_all();
+  }
+  if (menu_pick_.reachable()) {
+    ImGui::Separator();
+    ImGui::TextDisabled("face %d at %.3f, %.3f, %.3f m", menu_pick_.face, menu_pick_.point.x,
+                        menu_pick_.point.y, menu_pick_.point.z);
+  }
+  ImGui::EndPopup();
+  dirty_ = true;
+}
+
+}  // namespace icloth
