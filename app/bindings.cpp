@@ -17,11 +17,11 @@ constexpr std::string_view kHands = "Hands on the cloth", kCamera = "Camera", kT
 constexpr Binding kTable[] = {
     {T::press, button::kLeft, kPlain, H::any, U::handle, A::grab_handle, kHands, "Left drag on a handle", "take a parked handle and move it", ""},
     {T::press, button::kLeft, kPlain, H::any, U::cloth, A::grab, kHands, "Left drag on cloth", "grab it exactly there and pull; let go to release", "drag cloth: grab"},
-    {T::key, 'P', kPlain, H::holds, U::any, A::park, kHands, "P, Enter or right click while grabbing", "park the grab: it keeps pulling, the hand is free", "P: park"},
+    {T::key, 'P', kPlain, H::holds, U::any, A::park, kHands, "P, Enter, right click", "while grabbing: park it; it keeps pulling, the hand is free", "P: park"},
     {T::key, key::kEnter, kPlain, H::holds, U::any, A::park, kHands, "", "", ""},
     {T::key, key::kKeypadEnter, kPlain, H::holds, U::any, A::park, kHands, "", "", ""},
     {T::press, button::kRight, kPlain, H::holds, U::any, A::park, kHands, "", "", ""},
-    {T::wheel, 0, kPlain, H::holds, U::any, A::grab_depth, kHands, "Wheel while grabbing", "move the target away or nearer", "wheel: depth"},
+    {T::wheel, 0, kPlain, H::holds, U::any, A::grab_depth, kHands, "Wheel", "while grabbing: move the target away or nearer", "wheel: depth"},
     {T::wheel, 0, kCtrl, H::any, U::any, A::grab_radius, kHands, "Ctrl+wheel", "size of the grabbed patch", "Ctrl+wheel: size"},
     {T::wheel, 0, kShift, H::any, U::any, A::grab_stiffness, kHands, "Shift+wheel", "strength of the pull", "Shift+wheel: strength"},
     {T::press, button::kLeft, kShift, H::any, U::handle, A::add_handle, kHands, "Shift+left drag on handles", "select several and move them together", ""},

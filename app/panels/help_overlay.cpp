@@ -11,8 +11,8 @@ namespace {
 void draw_group(std::string_view group) {
   ImGui::TextColored(vec4(colour::kAccent), "%s", std::string(group).c_str());
   if (!ImGui::BeginTable(std::string(group).c_str(), 2, ImGuiTableFlags_RowBg)) return;
-  ImGui::TableSetupColumn("input", ImGuiTableColumnFlags_WidthStretch, 0.42f);
-  ImGui::TableSetupColumn("action", ImGuiTableColumnFlags_WidthStretch, 0.58f);
+  ImGui::TableSetupColumn("input", ImGuiTableColumnFlags_WidthStretch, 0.44f);
+  ImGui::TableSetupColumn("action", ImGuiTableColumnFlags_WidthStretch, 0.56f);
   for (const Binding& row : binding_table()) {
     if (row.group != group || row.input.empty()) continue;
     ImGui::TableNextRow();
@@ -40,7 +40,7 @@ std::vector<std::string_view> group_names() {
 void draw_help(PanelContext& context, const Rect& view) {
   if (!context.ui.help) return;
   const float width = std::min(920 * context.scale, view.width - 24 * context.scale);
-  const float height = std::min(600 * context.scale, view.height - 24 * context.scale);
+  const float height = std::min(570 * context.scale, view.height - 24 * context.scale);
   ImGui::SetNextWindowPos({view.x + (view.width - width) / 2, view.y + 12 * context.scale});
   ImGui::SetNextWindowSize({width, height});
   ImGui::SetNextWindowBgAlpha(0.95f);
