@@ -33,7 +33,7 @@ struct Box {
   Bounds bounds() const {
     if (low.x > high.x) return {};
     const Vec3d a = convert<double>(low), b = convert<double>(high);
-    return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a))};
+    return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a)), a.y};
   }
 };
 

@@ -11,6 +11,7 @@ namespace icloth {
 struct Bounds {
   Vec3d centre;
   double radius = 1;  ///< [m]
+  double lowest = 0;  ///< smallest height of a point in it [m]
 };
 
 /// Around the first `cloth` points and those of the others that are near them (a floor may reach

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "render/gl_context.h"
 #include "render/gl_targets.h"
@@ -89,9 +90,11 @@ struct Renderer::Parts {
   const World& world;
   Settings settings = settings_of(Quality::interactive);
   Quality quality = Quality::interactive;
-  double ground = 0;      ///< [m]
-  Bounds bounds;          ///< of the present frame
-  int overlay_count = 0;  ///< vertices
+  std::optional<double> chosen_ground;  ///< [m]
+  double start_ground = 0;              ///< lowest vertex of the start state [m]
+  double ground = 0;                    ///< of the present frame [m]
+  Bounds bounds;                        ///< of the present frame
+  int overlay_count = 0;                ///< vertices
 
   SharedVertices vertices;
   MeshPass meshes;
@@ -123,8 +126,8 @@ Renderer::Parts::Parts(const World& the_world)
     glVertexArrayAttribFormat(overlay_array, attribute, attribute == 0 ? 3 : 4, GL_FLOAT, GL_FALSE,
                               attribute * static_cast<GLuint>(sizeof(Vec3f)));
   }
-  if (!world.position.empty()) ground = world.position.front().y;
-  for (const Vec3d p : world.position) ground = std::min(ground, p.y);
+  if (!world.position.empty()) start_ground = world.position.front().y;
+  for (const Vec3d p : world.position) start_ground = std::min(start_ground, p.y);
 }
 
 Renderer::Parts::~Parts() {
@@ -135,6 +138,7 @@ Renderer::Parts::~Parts() {
 void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width, int height) {
   vertices.upload(frame.positions);
   bounds = bounds_of(frame.positions, static_cast<std::size_t>(world.cloth_vertices));
+  ground = chosen_ground.value_or(std::min(start_ground, bounds.lowest));
   const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
   overlay_count = static_cast<int>(list.size());
   glNamedBufferData(overlay_buffer, static_cast<GLsizeiptr>(list.size() * sizeof(OverlayVertex)),
@@ -264,7 +268,7 @@ void Renderer::set_quality(Quality quality) {
 
 Quality Renderer::quality() const { return parts_->quality; }
 
-void Renderer::set_ground(double height) { parts_->ground = height; }
+void Renderer::set_ground(double height) { parts_->chosen_ground = height; }
 
 std::string Renderer::vertex_way() const { return parts_->vertices.way_text(); }
 

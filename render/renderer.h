@@ -52,7 +52,8 @@ class Renderer {
 
   void set_quality(Quality quality);
   Quality quality() const;
-  /// Height of the studio floor [m]; by default the lowest vertex of the start state.
+  /// Height of the studio floor [m]; by default the lowest vertex of the start state, or of
+  /// the frame where that is lower.
   void set_ground(double height);
 
   /// Fills `width` × `height` pixels of a framebuffer (0: the window's) with the finished picture
