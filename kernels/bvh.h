@@ -72,17 +72,17 @@ struct TreeView {
   int levels = 0;  ///< 0: empty tree
 };
 
-/// Bit c is set where child c overlaps the box.
+/// Bit c is set where child c overlaps the box. Whole rows of ints: compilers turn them into
+/// vector comparisons, which a short-circuit per child would prevent.
 ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& box) {
-  int hit[kTreeWidth];
-  for (int c = 0; c < kTreeWidth; ++c) {
-    const bool apart = (node.lo[0][c] > box.hi[0]) | (box.lo[0] > node.hi[0][c]) |
-                       (node.lo[1][c] > box.hi[1]) | (box.lo[1] > node.hi[1][c]) |
-                       (node.lo[2][c] > box.hi[2]) | (box.lo[2] > node.hi[2][c]);
-    hit[c] = apart ? 0 : 1;
+  int apart[kTreeWidth] = {};
+  for (int k = 0; k < 3; ++k) {
+    const float low = box.lo[k], high = box.hi[k];
+    for (int c = 0; c < kTreeWidth; ++c)
+      apart[c] |= static_cast<int>(node.lo[k][c] > high) | static_cast<int>(low > node.hi[k][c]);
   }
   unsigned mask = 0;
-  for (int c = 0; c < kTreeWidth; ++c) mask |= static_cast<unsigned>(hit[c]) << c;
+  for (int c = 0; c < kTreeWidth; ++c) mask |= static_cast<unsigned>(apart[c] == 0) << c;
   return mask;
 }
 

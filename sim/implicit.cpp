@@ -178,8 +178,8 @@ struct ContactTerms {
   }
 };
 
-/// 1 where the solve contradicts what it assumed: an open contact that has closed or a closed one
-/// that now pulls, by more than a quarter of the thickness.
+/// 1 where the solve contradicts what it assumed by so much that it matters: an open contact that
+/// has closed to a quarter of the thickness, or a closed one that pulls from twice the thickness.
 struct Contradicted {
   ContactMotion motion;
   ContactLaw law;
@@ -187,9 +187,8 @@ struct Contradicted {
 
   ICLOTH_HD Index operator()(Index i) const {
     const Real gap = end_gap(motion.contacts[i], motion.end(i), law.dt);
-    const Real slack = Real(0.25) * law.thickness;
-    return term[i].active != 0 ? (gap > law.thickness + slack ? 1 : 0)
-                               : (gap < law.thickness - slack ? 1 : 0);
+    return term[i].active != 0 ? (gap > 2 * law.thickness ? 1 : 0)
+                               : (gap < Real(0.25) * law.thickness ? 1 : 0);
   }
 };
 
@@ -288,7 +287,7 @@ void Implicit::set_up(const World& world) {
   matrix_.row_first.upload(row_first);
   matrix_.column.upload(column);
   matrix_.diagonal.upload(diagonal);
-  matrix_.value.resize(static_cast<Index>(column.size()));
+  matrix_.value.resize(static_cast<Index>(column.size()) + kPadding);
   face_source_first_.upload(face_first);
   face_source_.upload(face_source);
   hinge_source_first_.upload(hinge_first);
@@ -331,12 +330,13 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   contact_terms_.resize(contacts.size());
   inverse_diagonal_.resize(mesh.cloth_vertices);
   contact_rhs_.resize(mesh.cloth_vertices);
-  dv_.resize(mesh.cloth_vertices);
+  dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
   const Incidence& incidence = proximity.incidence();
-  const SystemView system{matrix_.row_first.view(), matrix_.column.view(), matrix_.value.view(),
-                          s.inverse_mass.view(),    contacts.view(),       contact_terms_.view(),
-                          incidence.first(),        incidence.entries()};
+  const SystemView system{
+      matrix_.row_first.view(), matrix_.column.view(), matrix_.value.view().data()->m,
+      s.inverse_mass.view(),    contacts.view(),       contact_terms_.view(),
+      incidence.first(),        incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.thickness(),
                        step.dt};
   ContactMotion motion{contacts.view(),          s.v.view(), dv_.view(), s.inverse_mass.view(),

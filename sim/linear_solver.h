@@ -6,18 +6,21 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// Elements that matrix and vectors of the solver are allocated beyond their content.
+inline constexpr Index kPadding = 1;
+
 /// Block-sparse matrix with a fixed pattern, rows of ascending columns.
 struct BlockMatrix {
   Array<Index> row_first;  ///< (rows + 1)
   Array<Index> column;     ///< (blocks)
   Array<Index> diagonal;   ///< block number of (i, i) (rows)
-  Array<Mat3r> value;      ///< (blocks)
+  Array<Mat3r> value;      ///< (blocks + kPadding)
 };
 
 /// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices.
 struct SystemView {
   View<const Index> row_first, column;
-  View<const Mat3r> value;
+  const Real* entries;            ///< 9 a block, row-major, readable kPadding blocks beyond the end
   View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
   View<const Contact> contacts;
   View<const ContactTerm> terms;
@@ -32,9 +35,10 @@ struct LinearSolution {
 class LinearSolver {
  public:
   /// Solves for x (Δv), starting from what it holds; `inverse_diagonal`: block-Jacobi
-  /// preconditioner (rows).
+  /// preconditioner (rows). x is given with kPadding elements more than b.
   LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
-                       View<const Vec3r> b, View<Vec3r> x, double tolerance, int max_iterations);
+                       View<const Vec3r> b, View<Vec3r> padded, double tolerance,
+                       int max_iterations);
 
  private:
   Array<Vec3r> r_, z_, p_, q_;

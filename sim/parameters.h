@@ -34,7 +34,7 @@ struct Parameters {
   // implicit
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
-  int contact_passes = 3;
+  int contact_passes = 2;
   // broad phase
   int rebuild_interval = 16;
   // impact zones
