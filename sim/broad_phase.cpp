@@ -45,11 +45,7 @@ struct VertexBoxes {
   View<Box> box;
   Real pad;
 
-  ICLOTH_HD void operator()(Index i) const {
-    // The faster a vertex, the less its prediction can be trusted.
-    const Vec3r way = paths.predicted ? paths.dt * paths.to[i] : paths.to[i] - paths.from[i];
-    box[i] = paths.swept(i, pad + Real(0.25) * norm(way));
-  }
+  ICLOTH_HD void operator()(Index i) const { box[i] = paths.swept(i, pad); }
 };
 
 struct FaceBoxes {

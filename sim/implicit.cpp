@@ -194,7 +194,7 @@ struct Contradicted {
 
 /// Adds the contacts of one vertex to its right-hand side and inverts its diagonal block.
 struct FinishRow {
-  View<const Index> diagonal, contact_first, contact_entries;
+  View<const Index> row_first, contact_first, contact_entries;
   View<const Mat3r> value;
   View<const Contact> contacts;
   View<const ContactTerm> terms;
@@ -209,7 +209,7 @@ struct FinishRow {
       inverse_diagonal[i] = Mat3r{};
       return;
     }
-    Mat3r block = value[diagonal[i]];
+    Mat3r block = value[row_first[i]];  // the diagonal comes first
     for (Index k = contact_first[i]; k < contact_first[i + 1]; ++k) {
       const Index entry = contact_entries[k];
       const Real w = contacts[entry / 4].s.w[entry % 4];
@@ -241,20 +241,21 @@ struct PatternEntry {
 
 std::vector<PatternEntry> pattern_entries(const World& world) {
   std::vector<PatternEntry> entries;
-  entries.reserve(9 * static_cast<std::size_t>(world.cloth_faces) + 16 * world.hinges.size());
+  entries.reserve(6 * static_cast<std::size_t>(world.cloth_faces) + 10 * world.hinges.size());
+  // The upper half only: row ≤ column.
+  const auto add = [&](Index row, Index column, Index source) {
+    if (row <= column) entries.push_back({row, column, source});
+  };
   for (Index f = 0; f < world.cloth_faces; ++f) {
     const Triangle& t = world.face[static_cast<std::size_t>(f)];
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        entries.push_back(
-            {t[static_cast<std::size_t>(a)], t[static_cast<std::size_t>(b)], 9 * f + 3 * a + b});
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) add(t[a], t[b], 9 * f + static_cast<Index>(3 * a + b));
   }
-  for (std::size_t h = 0; h < world.hinges.size(); ++h)
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b)
-        entries.push_back({world.hinges[h].vertices[static_cast<std::size_t>(a)],
-                           world.hinges[h].vertices[static_cast<std::size_t>(b)],
-                           ~(16 * static_cast<Index>(h) + 4 * a + b)});
+  for (std::size_t h = 0; h < world.hinges.size(); ++h) {
+    const auto& v = world.hinges[h].vertices;
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b) add(v[a], v[b], ~static_cast<Index>(16 * h + 4 * a + b));
+  }
   std::sort(entries.begin(), entries.end(),
             [](const auto& p, const auto& q) { return p.key() < q.key(); });
   return entries;
@@ -264,14 +265,12 @@ std::vector<PatternEntry> pattern_entries(const World& world) {
 
 void Implicit::set_up(const World& world) {
   const std::vector<PatternEntry> entries = pattern_entries(world);
-  std::vector<Index> row_first{0}, column, diagonal, face_first{0}, face_source, hinge_first{0},
-      hinge_source;
+  std::vector<Index> row_first{0}, column, face_first{0}, face_source, hinge_first{0}, hinge_source;
   Index row = 0;
   const auto close_row = [&] { row_first.push_back(static_cast<Index>(column.size())), ++row; };
   for (std::size_t e = 0; e < entries.size();) {
     while (row < entries[e].row) close_row();
     const PatternEntry block = entries[e];
-    if (block.row == block.column) diagonal.push_back(static_cast<Index>(column.size()));
     column.push_back(block.column);
     for (; e < entries.size() && entries[e].row == block.row && entries[e].column == block.column;
          ++e) {
@@ -284,10 +283,7 @@ void Implicit::set_up(const World& world) {
     hinge_first.push_back(static_cast<Index>(hinge_source.size()));
   }
   while (row < world.cloth_vertices) close_row();
-  matrix_.row_first.upload(row_first);
-  matrix_.column.upload(column);
-  matrix_.diagonal.upload(diagonal);
-  matrix_.value.resize(static_cast<Index>(column.size()) + kPadding);
+  matrix_.set_pattern(row_first, column);
   face_source_first_.upload(face_first);
   face_source_.upload(face_source);
   hinge_source_first_.upload(hinge_first);
@@ -333,10 +329,12 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
   const Incidence& incidence = proximity.incidence();
-  const SystemView system{
-      matrix_.row_first.view(), matrix_.column.view(), matrix_.value.view().data()->m,
-      s.inverse_mass.view(),    contacts.view(),       contact_terms_.view(),
-      incidence.first(),        incidence.entries()};
+  const SystemView system{matrix_.row_first.view(),   matrix_.column.view(),
+                          matrix_.lower_first.view(), matrix_.lower_column.view(),
+                          matrix_.lower_block.view(), matrix_.value.view().data()->m,
+                          s.inverse_mass.view(),      contacts.view(),
+                          contact_terms_.view(),      incidence.first(),
+                          incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.thickness(),
                        step.dt};
   ContactMotion motion{contacts.view(),          s.v.view(), dv_.view(), s.inverse_mass.view(),
@@ -346,7 +344,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contact_terms_.view()});
     for_each("implicit.finish_rows", mesh.cloth_vertices,
-             FinishRow{matrix_.diagonal.view(), incidence.first(), incidence.entries(),
+             FinishRow{matrix_.row_first.view(), incidence.first(), incidence.entries(),
                        matrix_.value.view(), contacts.view(), contact_terms_.view(),
                        s.inverse_mass.view(), rhs_.view(), contact_rhs_.view(),
                        inverse_diagonal_.view()});

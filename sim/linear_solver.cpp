@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernels/lanes.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
@@ -41,17 +43,25 @@ struct MultiplyRow {
       y[i] = Vec3r{};
       return 0;
     }
-    // Four lanes a row instead of three: one vector multiplication. The fourth is not used; the
+    // Three numbers a row are read as four: one vector multiplication. The fourth is not used; the
     // arrays are one element longer than their content, so that it can be read.
-    Real lane[3][4] = {};
+    Lanes row0{}, row1{}, row2{}, columns{};
     for (Index k = system.row_first[i]; k < system.row_first[i + 1]; ++k) {
       const Real* m = system.entries + 9 * static_cast<std::ptrdiff_t>(k);
-      const Real* v = numbers + 3 * static_cast<std::ptrdiff_t>(system.column[k]);
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 4; ++c) lane[r][c] += m[3 * r + c] * v[c];
+      const Lanes v = load_lanes(numbers + 3 * static_cast<std::ptrdiff_t>(system.column[k]));
+      row0 += load_lanes(m) * v;
+      row1 += load_lanes(m + 3) * v;
+      row2 += load_lanes(m + 6) * v;
     }
-    Vec3r sum{lane[0][0] + lane[0][1] + lane[0][2], lane[1][0] + lane[1][1] + lane[1][2],
-              lane[2][0] + lane[2][1] + lane[2][2]};
+    for (Index k = system.lower_first[i]; k < system.lower_first[i + 1]; ++k) {
+      const Real* m = system.entries + 9 * static_cast<std::ptrdiff_t>(system.lower_block[k]);
+      const Real* v = numbers + 3 * static_cast<std::ptrdiff_t>(system.lower_column[k]);
+      columns += load_lanes(m) * v[0];
+      columns += load_lanes(m + 3) * v[1];
+      columns += load_lanes(m + 6) * v[2];
+    }
+    Vec3r sum{row0[0] + row0[1] + row0[2] + columns[0], row1[0] + row1[1] + row1[2] + columns[1],
+              row2[0] + row2[1] + row2[2] + columns[2]};
     for (Index k = system.contact_first[i]; k < system.contact_first[i + 1]; ++k) {
       const Index entry = system.contact_entries[k];
       sum += system.contacts[entry / 4].s.w[entry % 4] * contact[entry / 4];
@@ -103,6 +113,33 @@ struct NewDirection {
 };
 
 }  // namespace
+
+void BlockMatrix::set_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
+  const std::size_t rows = first.size() - 1;
+  std::vector<Index> lower(rows + 1, 0);
+  const auto for_lower = [&](const auto& visit) {
+    for (std::size_t i = 0; i < rows; ++i)
+      for (Index k = first[i]; k < first[i + 1]; ++k) {
+        const Index j = columns[static_cast<std::size_t>(k)];
+        if (j != static_cast<Index>(i)) visit(static_cast<Index>(i), j, k);
+      }
+  };
+  for_lower([&](Index, Index j, Index) { ++lower[static_cast<std::size_t>(j) + 1]; });
+  for (std::size_t i = 0; i < rows; ++i) lower[i + 1] += lower[i];
+  std::vector<Index> place(lower.begin(), lower.end() - 1);
+  std::vector<Index> lower_columns(columns.size() - rows), blocks(columns.size() - rows);
+  for_lower([&](Index i, Index j, Index k) {
+    const auto slot = static_cast<std::size_t>(place[static_cast<std::size_t>(j)]++);
+    lower_columns[slot] = i;
+    blocks[slot] = k;
+  });
+  row_first.upload(first);
+  column.upload(columns);
+  lower_first.upload(lower);
+  lower_column.upload(lower_columns);
+  lower_block.upload(blocks);
+  value.resize(static_cast<Index>(columns.size()) + kPadding);
+}
 
 LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                                    View<const Vec3r> b, View<Vec3r> padded, double tolerance,

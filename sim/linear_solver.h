@@ -9,17 +9,24 @@ namespace icloth::ICLOTH_BUILD {
 /// Elements that matrix and vectors of the solver are allocated beyond their content.
 inline constexpr Index kPadding = 1;
 
-/// Block-sparse matrix with a fixed pattern, rows of ascending columns.
+/// Symmetric block-sparse matrix with a fixed pattern: blocks (i, j) with j ≥ i, rows of ascending
+/// columns, the diagonal block first. Half the bytes, and bytes are what a product costs.
 struct BlockMatrix {
   Array<Index> row_first;  ///< (rows + 1)
   Array<Index> column;     ///< (blocks)
-  Array<Index> diagonal;   ///< block number of (i, i) (rows)
   Array<Mat3r> value;      ///< (blocks + kPadding)
+  /// The blocks left of the diagonal: those of other rows, to be transposed.
+  Array<Index> lower_first;   ///< (rows + 1)
+  Array<Index> lower_column;  ///< (blocks − rows)
+  Array<Index> lower_block;   ///< number of the stored block (lower_column, row)
+
+  /// Works out the lower lists from row_first and column on the host.
+  void set_pattern(const std::vector<Index>& first, const std::vector<Index>& columns);
 };
 
 /// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices.
 struct SystemView {
-  View<const Index> row_first, column;
+  View<const Index> row_first, column, lower_first, lower_column, lower_block;
   const Real* entries;            ///< 9 a block, row-major, readable kPadding blocks beyond the end
   View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
   View<const Contact> contacts;

@@ -1,0 +1,37 @@
+// Four numbers that are loaded, multiplied and added together: a vector register on the CPU.
+#pragma once
+
+#include <cstring>
+
+#include "kernels/platform.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+#if defined(__CUDACC__)
+struct Lanes {
+  Real v[4];
+  ICLOTH_HD Real operator[](int k) const { return v[k]; }
+};
+ICLOTH_HD inline Lanes operator*(Lanes a, Lanes b) {
+  return {{a.v[0] * b.v[0], a.v[1] * b.v[1], a.v[2] * b.v[2], a.v[3] * b.v[3]}};
+}
+ICLOTH_HD inline Lanes operator*(Lanes a, Real s) {
+  return {{a.v[0] * s, a.v[1] * s, a.v[2] * s, a.v[3] * s}};
+}
+ICLOTH_HD inline Lanes& operator+=(Lanes& a, Lanes b) {
+  for (int k = 0; k < 4; ++k) a.v[k] += b.v[k];
+  return a;
+}
+#else
+// Written out because compilers drop a lane that is not used and then shuffle the other three.
+using Lanes = Real __attribute__((vector_size(4 * sizeof(Real))));
+#endif
+
+/// Reads four numbers from any address.
+ICLOTH_HD inline Lanes load_lanes(const Real* from) {
+  Lanes a;
+  memcpy(&a, from, sizeof a);
+  return a;
+}
+
+}  // namespace icloth::ICLOTH_BUILD
