@@ -20,6 +20,14 @@ std::string check_device(const std::string& text) {
   return "'" + text + "', expected cpu, cuda or cuda:N";
 }
 
+/// CLI::Range lets NaN through.
+std::string check_time(const std::string& text) {
+  char* end = nullptr;
+  const double time = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && time >= 0 && time <= kLongestTime) return "";
+  return "'" + text + "', expected seconds from 0 to 100000";
+}
+
 /// In single quotes where a shell would otherwise change the word.
 std::string quoted(const std::string& word) {
   static constexpr char kPlain[] =
@@ -46,7 +54,7 @@ void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool sce
   auto* steps = verb.add_option("--steps", options.steps, "number of steps")
                     ->check(CLI::Range(0L, kMostSteps));
   verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
-      ->check(CLI::Range(0.0, kLongestTime))
+      ->check(check_time)
       ->excludes(steps);
   verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
       ->allow_extra_args(false);

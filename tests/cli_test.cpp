@@ -1,0 +1,270 @@
+// The built program, run as a user runs it: exit codes, messages, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::size_t count_lines(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Every test has an empty folder of its own, where the program runs.
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    base_ = fs::path(::testing::TempDir()) / ("icloth_cli_" + std::string(info->name()));
+    fs::remove_all(base_);
+    fs::create_directories(folder_ = base_ / "here");
+  }
+  void TearDown() override {
+    if (!HasFailure()) fs::remove_all(base_);
+  }
+
+  /// `arguments` as typed into a shell; `environment` as VAR=VALUE words before the program.
+  Outcome icloth(const std::string& arguments, const std::string& environment = "") const {
+    const fs::path out = base_ / "out", err = base_ / "err";
+    const std::string command = "cd '" + folder_.string() + "' && env " + environment +
+                                " timeout 100 '" + ICLOTH_PROGRAM "' " + arguments + " > '" +
+                                out.string() + "' 2> '" + err.string() + "' < /dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+
+  /// Exit code 2, one line on stderr, nothing on stdout, no file made.
+  void expect_bad_input(const std::string& arguments, const std::string& part) const {
+    const std::size_t before = files();
+    const Outcome outcome = icloth(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("icloth: ")) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << arguments << "\n" << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, part)) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_EQ(files(), before) << arguments;
+  }
+
+  fs::path folder_;
+
+ private:
+  fs::path base_;
+};
+
+/// A small sheet 1 mm above a ball; the ball is wide enough to catch it.
+constexpr const char* kDrop = R"({
+  "name": "Drop", "time_step": 0.01, "duration": 0.2,
+  "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
+                "transform": { "translate": [0, 0.11, 0], "rotate": [90, 0, 0] } } ],
+  "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
+})";
+
+constexpr const char* kTwoTriangles = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr const char* kCrossing =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.3 1\n";
+
+}  // namespace
+
+TEST_F(Cli, HelpAndVersion) {
+  EXPECT_EQ(icloth("--help").code, 0);
+  EXPECT_TRUE(contains(icloth("--help").out, "check"));
+  EXPECT_EQ(icloth("run --help").code, 0);
+  const Outcome version = icloth("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_TRUE(version.out.starts_with("icloth ")) << version.out;
+}
+
+TEST_F(Cli, BadUsage) {
+  expect_bad_input("rnu", "'run'");
+  expect_bad_input("run", "SCENE");
+  expect_bad_input("run scarf --nonsense", "--nonsense");
+  expect_bad_input("run scarf --steps -1", "--steps");
+  expect_bad_input("run scarf --steps many", "--steps");
+  expect_bad_input("run scarf --steps 3 --time 1", "--");
+  expect_bad_input("run scarf --time nan", "--time");
+  expect_bad_input("run scarf --threads 0", "--threads");
+  expect_bad_input("run scarf --device gpu", "cuda:N");
+  expect_bad_input("run scarf --precision f16", "f16");
+  expect_bad_input("run scarf --device cuda --precision f64", "cpu");
+  expect_bad_input("run scarf --on-failure panic", "panic");
+  expect_bad_input("run scarf --export obj", "--out");
+  expect_bad_input("run scarf --export fbx --out frames", "fbx");
+  expect_bad_input("run scarf --every 0 --out frames", "--every");
+  expect_bad_input("check", "MESH");
+  expect_bad_input("bench fast", "quick");
+  expect_bad_input("bench --threads x", "--threads");
+}
+
+TEST_F(Cli, BadParameters) {
+  expect_bad_input("run scarf --set time_step=0", "step.time_step");
+  expect_bad_input("run scarf --set time_step", "time_step");
+  expect_bad_input("run scarf --set proximity.thicknes=0.001", "'proximity.thickness'");
+  expect_bad_input("run scarf --set impact_zones.rho=1", "impact_zones.rho");
+  expect_bad_input("run scarf --set mu=", "impact_zones.penalty");
+}
+
+TEST_F(Cli, BadFiles) {
+  write("broken.json", "{ \"cloths\": [");
+  write("unknown.json", "{ \"cloth\": [] }");
+  write("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 x 0\nf 1 2 3\n");
+  write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+  write("empty.obj", "");
+  expect_bad_input("run nosuch.json", "nosuch.json");
+  expect_bad_input("run broken.json", "broken.json");
+  expect_bad_input("run unknown.json", "'cloths'");
+  expect_bad_input("run broken.obj", "broken.obj");
+  expect_bad_input("run .", "");
+  expect_bad_input("check nosuch.obj", "nosuch.obj");
+  expect_bad_input("check broken.obj", "broken.obj");
+  expect_bad_input("check range.obj", "4");
+  expect_bad_input("check empty.obj", "empty.obj");
+  expect_bad_input("replay nosuch.json", "nosuch.json");
+  expect_bad_input("replay unknown.json", "icloth_recording");
+  expect_bad_input("run scarf --input unknown.json", "icloth_recording");
+  expect_bad_input("run scarf --stats steps.txt", ".csv");
+  expect_bad_input("run scarf --stats no/such/steps.csv", "no/such");
+  expect_bad_input("run scarf --record no/such/run.json", "no/such");
+  expect_bad_input("ccd nosuch.csv", "nosuch.csv");
+}
+
+TEST_F(Cli, MissingDisplayAndDevice) {
+  for (const char* arguments : {"", "view", "view scarf", "scarf"}) {
+    const Outcome window = icloth(arguments, "-u DISPLAY -u WAYLAND_DISPLAY");
+    EXPECT_EQ(window.code, 3) << arguments << window.err;
+    EXPECT_EQ(count_lines(window.err), 1u) << window.err;
+  }
+  write("drop.json", kDrop);
+  const Outcome cuda = icloth("run drop.json --device cuda", "CUDA_VISIBLE_DEVICES=");
+  EXPECT_EQ(cuda.code, 3) << cuda.err;
+  EXPECT_EQ(count_lines(cuda.err), 1u) << cuda.err;
+}
+
+TEST_F(Cli, CheckFindsWhatCrosses) {
+  write("one.obj", kTwoTriangles);
+  write("both.obj", std::string(kCrossing) + "g left\nf 1 2 3\ng right\nf 4 5 6\n");
+  write("body.obj", std::string(kCrossing) + "g obstacle:a\nf 1 2 3\ng obstacle:b\nf 4 5 6\n");
+  write("other.obj", "v 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.3 1\nf 1 2 3\n");
+  EXPECT_EQ(icloth("check one.obj").code, 0);
+  const Outcome self = icloth("check both.obj");
+  EXPECT_EQ(self.code, 1);
+  EXPECT_TRUE(contains(self.out, "left face 0 — ")) << self.out;
+  EXPECT_TRUE(contains(self.out, "right face 0")) << self.out;
+  EXPECT_TRUE(contains(self.out, "intersecting pairs 1")) << self.out;
+  EXPECT_EQ(icloth("check body.obj").code, 0);
+  const Outcome inter = icloth("check one.obj other.obj");
+  EXPECT_EQ(inter.code, 1);
+  EXPECT_TRUE(contains(inter.out, "one.obj")) << inter.out;
+  EXPECT_TRUE(contains(inter.out, "other.obj")) << inter.out;
+}
+
+TEST_F(Cli, DumpConfigShowsWhatIsInForce) {
+  const Outcome outcome = icloth("run sphere --set mu=512 --set wind.x=3 --dump-config");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["impact_zones.penalty"], 512);
+  EXPECT_EQ(json["wind.x"], 3);
+  EXPECT_EQ(json["step.time_step"], 0.005);  // the scene's own
+}
+
+TEST_F(Cli, RunExportsFramesAndStatistics) {
+  write("drop.json", kDrop);
+  const Outcome run = icloth(
+      "run drop.json --device cpu --steps 10 --out frames --export obj --every 5 --stats s.csv");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "penetrations left")) << run.out;
+  EXPECT_EQ(run.err, "");  // no progress line: this is no terminal
+  for (const char* name : {"frame_00000.obj", "frame_00001.obj", "frame_00002.obj"})
+    EXPECT_TRUE(fs::exists(folder_ / "frames" / name)) << name;
+  EXPECT_FALSE(fs::exists(folder_ / "frames" / "frame_00003.obj"));
+  const std::string frame = read(folder_ / "frames" / "frame_00002.obj");
+  EXPECT_TRUE(contains(frame, "g cloth:sheet") && contains(frame, "g obstacle:ball"));
+  EXPECT_EQ(icloth("check frames/frame_00002.obj").code, 0);
+  const std::string csv = read(folder_ / "s.csv");
+  EXPECT_TRUE(csv.starts_with("step,time,dt,substeps,retries,ms_total,")) << csv.substr(0, 80);
+  EXPECT_EQ(count_lines(csv), 11u);
+  ASSERT_EQ(icloth("run drop.json --device cpu --steps 4 --stats s.json --quiet").code, 0);
+  const auto json = nlohmann::json::parse(read(folder_ / "s.json"));
+  ASSERT_EQ(json.size(), 4u);
+  EXPECT_EQ(json[3]["impacts_left"], 0);
+  EXPECT_EQ(json[3]["state_hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(Cli, DurationAndTimeGiveTheSteps) {
+  write("drop.json", kDrop);
+  EXPECT_EQ(icloth("run drop.json --device cpu --quiet --stats a.csv").code, 0);
+  EXPECT_EQ(count_lines(read(folder_ / "a.csv")), 1u + 20);
+  EXPECT_EQ(icloth("run drop.json --device cpu --quiet --time 0.05 --stats b.csv").code, 0);
+  EXPECT_EQ(count_lines(read(folder_ / "b.csv")), 1u + 5);
+}
+
+TEST_F(Cli, RecordingReplaysOnAnyNumberOfThreads) {
+  write("drop.json", kDrop);
+  ASSERT_EQ(icloth("run drop.json --device cpu --threads 2 --steps 12 --record r.json").code, 0);
+  for (const char* threads : {"1", "2"}) {
+    const Outcome replay = icloth(std::string("replay r.json --threads ") + threads);
+    EXPECT_EQ(replay.code, 0) << replay.err;
+    EXPECT_TRUE(contains(replay.out, "as recorded")) << replay.out;
+  }
+  EXPECT_EQ(icloth("run drop.json --device cpu --input r.json --quiet").code, 0);
+  std::string text = read(folder_ / "r.json");
+  const std::size_t hash = text.find("final_hash") + 14;
+  text[hash] = text[hash] == '0' ? '1' : '0';
+  write("r.json", text);
+  const Outcome changed = icloth("replay r.json");
+  EXPECT_EQ(changed.code, 1);
+  EXPECT_TRUE(contains(changed.err, "recorded was")) << changed.err;
+}
+
+TEST_F(Cli, BadStartIsRefusedWithItsPairs) {
+  std::string scene = kDrop;
+  scene.replace(scene.find("0.11"), 4, "0.05");
+  write("inside.json", scene);
+  const Outcome run = icloth("run inside.json --device cpu --out frames --stats s.csv");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_TRUE(contains(run.err, "cloth:sheet face ")) << run.err;
+  EXPECT_TRUE(contains(run.err, " — obstacle:ball face ")) << run.err;
+  EXPECT_FALSE(fs::exists(folder_ / "frames"));
+}
+
+TEST_F(Cli, PenetrationsLeftAreAFailure) {
+  write("drop.json", kDrop);
+  const Outcome run = icloth(
+      "run drop.json --device cpu --set impact_zones.enabled=off --set proximity.enabled=off "
+      "--on-failure continue");
+  EXPECT_EQ(run.code, 1) << run.out << run.err;
+}
+
+TEST_F(Cli, InfoNamesTheBuilds) {
+  const Outcome info = icloth("info");
+  EXPECT_EQ(info.code, 0) << info.err;
+  for (const char* part : {"cpu32", "cpu64", "cuda32", "GB/s", "compiler"})
+    EXPECT_TRUE(contains(info.out, part)) << info.out;
+}
