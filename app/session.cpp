@@ -83,7 +83,6 @@ void Session::pause() { send(Command::pause); }
 void Session::step_once() { send(Command::step); }
 void Session::step_back(std::size_t count) { send(Back{count}); }
 void Session::reset() { send(Command::reset); }
-void Session::smaller_step() { send(Command::smaller_step); }
 void Session::set_scripted(bool on) { send(Toggle{true, on}); }
 void Session::set_real_time(bool on) { send(Toggle{false, on}); }
 void Session::save(const std::string& path) { send(Save{path}); }
@@ -165,13 +164,6 @@ void Session::handle(Command command) {
       go_to(start_);
       history_.clear();
       break;
-    case Command::smaller_step: {
-      const ParameterInfo* info = find_parameter("step.time_step");
-      handle(Change{"step.time_step",
-                    std::max(info ? info->minimum : 0.0, simulator_->parameters().time_step / 2)});
-      handle(Command::play);
-      break;
-    }
     case Command::stop:
       stopping_ = true;
       break;

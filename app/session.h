@@ -68,7 +68,6 @@ class Session {
   void step_once();  ///< one step, then pause
   void step_back(std::size_t count = 1);
   void reset();                ///< to the start state; parameters stay
-  void smaller_step();         ///< halves the time step and goes on playing
   void set_scripted(bool on);  ///< apply the scene's scripted grabs as well
   void set_real_time(bool on);
   void save(const std::string& path);  ///< writes the recording; tells in a note how it went
@@ -91,7 +90,7 @@ class Session {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Command { play, pause, step, reset, smaller_step, stop };
+  enum class Command { play, pause, step, reset, stop };
   struct Back {
     std::size_t count;
   };

@@ -221,7 +221,8 @@ TEST(session, pauses_on_a_refused_step_and_goes_on_with_a_smaller_one) {
   EXPECT_EQ(session->state().step, 2);
   EXPECT_EQ(session->state().report.offending.size(), 1u);
   EXPECT_NE(session->state().failure.find("3 collisions"), std::string::npos);
-  session->smaller_step();
+  session->set("step.time_step", 0.005);
+  session->play();
   ASSERT_TRUE(wait_for_step(*session, 4));
   EXPECT_FALSE(session->state().failed);
   EXPECT_DOUBLE_EQ(session->state().parameters.time_step, 0.005);
