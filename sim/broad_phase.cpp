@@ -229,7 +229,8 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted) {
   const Topology& mesh = step.mesh;
   // Pad: the repulsion reaches h, and what the solve does beyond the prediction must fit too.
   const Real pad = std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
-                             static_cast<Real>(0.2) * mesh.median_edge});
+                             // A second time in a step, impacts will move vertices further still.
+                             static_cast<Real>(predicted ? 0.2 : 0.5) * mesh.median_edge});
   vertex_box_.resize(mesh.vertices);
   face_box_.resize(mesh.faces);
   edge_box_.resize(mesh.edges);

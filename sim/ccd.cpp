@@ -46,6 +46,13 @@ struct TestVertexFace {
   View<const Pair> candidates;
   View<const Int3> face;
 
+  /// Counts the pairs that are tested.
+  ICLOTH_HD Index operator()(Index i) const {
+    const Int3 f = face[candidates[i].b];
+    const Index v[4] = {candidates[i].a, f.v[0], f.v[1], f.v[2]};
+    return base.skip(v) ? 0 : 1;
+  }
+
   template <class Emit>
   ICLOTH_HD void operator()(Index i, Emit& emit) const {
     const Pair pair = candidates[i];
@@ -59,6 +66,12 @@ struct TestEdgeEdge {
   ImpactTest base;
   View<const Pair> candidates;
   View<const Int2> edge;
+
+  ICLOTH_HD Index operator()(Index i) const {
+    const Int2 p = edge[candidates[i].a], q = edge[candidates[i].b];
+    const Index v[4] = {p.v[0], p.v[1], q.v[0], q.v[1]};
+    return base.skip(v) ? 0 : 1;
+  }
 
   template <class Emit>
   ICLOTH_HD void operator()(Index i, Emit& emit) const {
@@ -79,12 +92,17 @@ void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std:
                         dirty,       incremental, 0.25 * static_cast<double>(step.offset())};
   impacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
-  collect("ccd.vertex_face", vf.size(), TestVertexFace{base, vf.view(), mesh.face.view()}, found_);
-  append_sorted_("ccd.sort", found_, impacts_);
   const Array<Pair>& ee = broad_phase.edge_edges();
-  collect("ccd.edge_edge", ee.size(), TestEdgeEdge{base, ee.view(), mesh.edge.view()}, found_);
+  const TestVertexFace test_vf{base, vf.view(), mesh.face.view()};
+  const TestEdgeEdge test_ee{base, ee.view(), mesh.edge.view()};
+  collect("ccd.vertex_face", vf.size(), test_vf, found_);
   append_sorted_("ccd.sort", found_, impacts_);
-  step.report.elementary_tests += vf.size() + ee.size();
+  collect("ccd.edge_edge", ee.size(), test_ee, found_);
+  append_sorted_("ccd.sort", found_, impacts_);
+  step.report.elementary_tests +=
+      incremental ? std::int64_t{reduce("ccd.count", vf.size(), Index{0}, test_vf, Sum{})} +
+                        reduce("ccd.count", ee.size(), Index{0}, test_ee, Sum{})
+                  : broad_phase.candidate_count();
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -203,6 +203,16 @@ struct StillNeeded {
   ICLOTH_HD bool operator()(Index i) const { return kept[i].idle < 2; }
 };
 
+/// 1 for the faces of T_d: those with a dirty vertex.
+struct IsDynamic {
+  View<const Int3> face;
+  View<const std::uint8_t> dirty;
+  ICLOTH_HD Index operator()(Index f) const {
+    const Int3 t = face[f];
+    return dirty[t.v[0]] != 0 || dirty[t.v[1]] != 0 || dirty[t.v[2]] != 0 ? 1 : 0;
+  }
+};
+
 struct LargestZone {
   View<const Index> first;
   ICLOTH_HD Index operator()(Index i) const { return first[i + 1] - first[i]; }
@@ -343,6 +353,8 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   swap(kept_, unsorted_);
 
   StepReport& report = step.report;
+  report.dynamic_faces = reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
+                                IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{});
   report.zones = std::max<std::int64_t>(report.zones, zones);
   report.largest_zone = std::max<std::int64_t>(
       report.largest_zone,

@@ -90,7 +90,7 @@ constexpr ParameterInfo kTable[] = {
      "measured"},
 
     {"impact_zones.enabled", "impact zones", "", &P::impact_zones_enabled, 0, 1, false,
-     "off: penetrations are counted, not resolved", "on", "paper, Section 4"},
+     "off: a step with impacts is refused, nothing is resolved", "on", "paper, Section 4"},
     {"impact_zones.offset", "impact offset δ", "m", &P::offset, 1e-6, 0.01, true,
      "resolved layers end closer to each other, more of them collide again",
      "resolved layers end further apart, visible jumps", "ARCSim; 0.1 × thickness"},
@@ -124,9 +124,6 @@ constexpr ParameterInfo kTable[] = {
     {"grab.max_force", "strongest hand", "N", &P::grab_max_force, 1e-2, 1e3, true,
      "a stuck cloth is let go of sooner", "pulls heavier cloth, stretches the grabbed patch",
      "own choice: ten times the weight of a scarf"},
-    {"grab.max_force", "strongest pull", "N", &P::grab_max_force, 0.1, 1000, true,
-     "a hand slips behind heavy or caught cloth", "a hand tears cloth along, larger impacts",
-     "own choice: a kilogram"},
 };
 
 /// Short names of the paper's symbols, for the command line.

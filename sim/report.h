@@ -28,8 +28,8 @@ struct StepReport {
          ms_impact_zones = 0, ms_other = 0;
   std::int64_t proximity_pairs = 0, candidate_pairs = 0, elementary_tests = 0, impacts_first = 0,
                impacts_left = 0;
-  std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0, dynamic_faces = 0,
-               static_faces = 0;
+  std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0;
+  std::int64_t dynamic_faces = 0, static_faces = 0;  ///< T_d of the last round, and the other faces
   std::int64_t newton_iterations = 0, cg_iterations = 0;
   double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true
   double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  ///< [J]

@@ -102,6 +102,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     report.state_hash = hash_state(state_);
   });
   report.time = time_;
+  report.static_faces = mesh_.faces - report.dynamic_faces;
   report.candidate_pairs = broad_phase_.candidate_count();
   report.ms_other = report.ms_total - report.ms_proximity - report.ms_implicit -
                     report.ms_broad_phase - report.ms_ccd - report.ms_impact_zones;
