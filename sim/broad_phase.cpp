@@ -225,12 +225,12 @@ void Tree::refit(View<const Box> boxes, Index) {
              FitLevel{nodes_.view(), level_first_[l - 1], level_count_[l - 1], level_first_[l]});
 }
 
-void BroadPhase::make_boxes(StepContext& step, bool predicted) {
+void BroadPhase::make_boxes(StepContext& step, bool predicted, bool after_impacts) {
   const Topology& mesh = step.mesh;
   // Pad: the repulsion reaches h, and what the solve does beyond the prediction must fit too.
   const Real pad = std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
-                             // A second time in a step, impacts will move vertices further still.
-                             static_cast<Real>(predicted ? 0.2 : 0.5) * mesh.median_edge});
+                             // After a zone solve, the next ones will move vertices further still.
+                             static_cast<Real>(after_impacts ? 0.5 : 0.2) * mesh.median_edge});
   vertex_box_.resize(mesh.vertices);
   face_box_.resize(mesh.faces);
   edge_box_.resize(mesh.edges);
@@ -296,13 +296,13 @@ bool BroadPhase::covers(StepContext& step, bool predicted, Real margin) const {
 void BroadPhase::prepare(StepContext& step) {
   // Two elements closer than h must overlap: each end needs half of h around it.
   if (covers(step, true, static_cast<Real>(0.5) * step.thickness())) return;
-  make_boxes(step, true);
+  make_boxes(step, true, false);
   find_candidates(step);
 }
 
-void BroadPhase::cover_candidate(StepContext& step) {
+void BroadPhase::cover_candidate(StepContext& step, bool after_impacts) {
   if (covers(step, false, Real(0))) return;
-  make_boxes(step, false);
+  make_boxes(step, false, after_impacts);
   find_candidates(step);
 }
 

@@ -36,7 +36,7 @@ class BroadPhase {
   /// present lists already do.
   void prepare(StepContext& step);
   /// Makes the candidate lists cover x0 → x1 as it is now.
-  void cover_candidate(StepContext& step);
+  void cover_candidate(StepContext& step, bool after_impacts = false);
   /// Forgets the lists (the state was set from outside).
   void invalidate() { valid_ = false; }
 
@@ -49,7 +49,7 @@ class BroadPhase {
  private:
   /// True while every path, with `margin` around it, lies in its vertex's trusted region.
   bool covers(StepContext& step, bool predicted, Real margin) const;
-  void make_boxes(StepContext& step, bool predicted);
+  void make_boxes(StepContext& step, bool predicted, bool after_impacts);
   void find_candidates(const StepContext& step);
 
   Array<Box> vertex_box_;  ///< trusted region of each vertex (vertices), make_boxes

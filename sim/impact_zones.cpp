@@ -213,6 +213,31 @@ struct IsDynamic {
   }
 };
 
+struct ImpactCorners {
+  View<const Impact> impacts;
+  View<Int4> slots;
+  ICLOTH_HD void operator()(Index i) const {
+    for (int a = 0; a < 4; ++a) slots[i].v[a] = impacts[i].s.v[a];
+  }
+};
+
+struct RollBack {
+  View<const Index> first;  ///< impacts of each vertex
+  View<const Vec3r> x0;
+  View<Vec3r> x1;
+  View<std::uint8_t> dirty;
+  ICLOTH_HD void operator()(Index i) const {
+    dirty[i] = first[i + 1] > first[i] ? 1 : 0;
+    if (dirty[i] != 0) x1[i] = x0[i];
+  }
+};
+
+struct TakeCandidate {
+  View<const Vec3r> candidate;
+  View<Vec3r> x1;
+  ICLOTH_HD void operator()(Index i) const { x1[i] = candidate[i]; }
+};
+
 struct LargestZone {
   View<const Index> first;
   ICLOTH_HD Index operator()(Index i) const { return first[i + 1] - first[i]; }
@@ -361,6 +386,21 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
       reduce("impact_zones.largest", zones, Index{0}, LargestZone{vertex_first_.view()}, Max{}));
   report.zone_iterations +=
       reduce("impact_zones.iterations", zones, Index{0}, ZoneIterations{results_.view()}, Max{});
+}
+
+void ImpactZones::back_to_candidate(StepContext& step) {
+  for_each("impact_zones.candidate", step.mesh.cloth_vertices,
+           TakeCandidate{step.state.candidate.view(), step.state.x1.view()});
+}
+
+void ImpactZones::roll_back(StepContext& step, const Array<Impact>& impacts) {
+  const Index vertices = step.mesh.cloth_vertices;
+  slots_.resize(impacts.size());
+  for_each("impact_zones.corners", impacts.size(), ImpactCorners{impacts.view(), slots_.view()});
+  incidence_.build(slots_.view(), vertices);
+  dirty_.resize(vertices);
+  for_each("impact_zones.roll_back", vertices,
+           RollBack{incidence_.first(), step.state.x0.view(), step.state.x1.view(), dirty_.view()});
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -27,6 +27,11 @@ class ImpactZones {
   /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
   void solve(StepContext& step, const Array<Impact>& impacts);
 
+  /// x1 as the implicit step left it.
+  void back_to_candidate(StepContext& step);
+  /// Sets every vertex of a colliding pair back to where it was at the start; writes dirty().
+  void roll_back(StepContext& step, const Array<Impact>& impacts);
+
   /// Largest |x1 − x*| of the last solve [m].
   Real largest_correction() const { return largest_correction_; }
 

@@ -36,7 +36,10 @@ class Solver final : public Simulator {
 
  private:
   /// One attempt at a substep; false when impacts are left or numbers are not finite.
-  bool try_substep(StepReport& report, double start, double dt);
+  bool try_substep(StepReport& report, double start, double dt, bool last_resort);
+  bool resolve_by_zones(StepContext& step);
+  bool resolve_by_rollback(StepContext& step);
+  void find_impacts(StepContext& step, bool incremental);
   void begin_substep(double start, double dt);
   void accept_substep(double dt);
   void report_offending(StepReport& report) const;

@@ -8,7 +8,8 @@
 //                                 with a dirty vertex                              Algorithm 1
 //     none left → accept
 //     impact_zones            (4) moves only what must move                        Algorithms 2–3
-//   impacts left → refuse, halve the step and try again; penetrations are never accepted.
+//   impacts left → refuse, halve the step and try again; in the smallest step, what still collides
+//   stays where it was. Penetrations are never accepted.
 
 #include <chrono>
 #include <cmath>
@@ -30,7 +31,7 @@ void timed(double& milliseconds, const Stage& stage) {
 
 }  // namespace
 
-bool Solver::try_substep(StepReport& report, double start, double dt) {
+bool Solver::try_substep(StepReport& report, double start, double dt, bool last_resort) {
   begin_substep(start, dt);
   StepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt)};
 
@@ -45,11 +46,14 @@ bool Solver::try_substep(StepReport& report, double start, double dt) {
   report.finite = all_finite(state_);
   if (!report.finite) return false;
 
+  return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
+}
+
+bool Solver::resolve_by_zones(StepContext& step) {
+  StepReport& report = step.report;
   impact_zones_.begin_step();
   for (int round = 0;; ++round) {
-    timed(report.ms_broad_phase, [&] { broad_phase_.cover_candidate(step); });
-    timed(report.ms_ccd, [&] { ccd_.find(step, broad_phase_, impact_zones_.dirty(), round > 0); });
-    report.impacts_left = ccd_.impacts().size();
+    find_impacts(step, round > 0);
     if (round == 0) report.impacts_first += report.impacts_left;
     if (report.impacts_left == 0) return true;
     if (round == parameters_.max_rounds || !parameters_.impact_zones_enabled) return false;
@@ -60,6 +64,27 @@ bool Solver::try_substep(StepReport& report, double start, double dt) {
     report.finite = std::isfinite(correction);
     if (!(correction <= parameters_.max_correction * world_.median_edge)) return false;
   }
+}
+
+/// What still collides stays where it was; with resting obstacles this always ends, at the latest
+/// in the state of the start.
+bool Solver::resolve_by_rollback(StepContext& step) {
+  if (!step.report.finite || !parameters_.impact_zones_enabled) return false;
+  impact_zones_.back_to_candidate(step);
+  for (int round = 0; round < 10 * parameters_.max_rounds; ++round) {
+    find_impacts(step, round > 0);
+    if (step.report.impacts_left == 0) return true;
+    ++step.report.rounds;
+    timed(step.report.ms_impact_zones, [&] { impact_zones_.roll_back(step, ccd_.impacts()); });
+  }
+  return false;
+}
+
+void Solver::find_impacts(StepContext& step, bool incremental) {
+  StepReport& report = step.report;
+  timed(report.ms_broad_phase, [&] { broad_phase_.cover_candidate(step, incremental); });
+  timed(report.ms_ccd, [&] { ccd_.find(step, broad_phase_, impact_zones_.dirty(), incremental); });
+  report.impacts_left = ccd_.impacts().size();
 }
 
 StepReport Solver::step(std::span<const InputEvent> events) {
@@ -79,7 +104,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
       const double dt = report.dt / static_cast<double>(std::int64_t{1} << level);
       const double start =
           time_ + report.dt * static_cast<double>(done) / static_cast<double>(whole);
-      if (try_substep(report, start, dt)) {
+      if (try_substep(report, start, dt, level == levels)) {
         accept_substep(dt);
         ++report.substeps;
         done += whole >> level;
