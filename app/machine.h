@@ -11,7 +11,8 @@ std::string compiler_name();    ///< "g++ 12.2.0, Release"
 std::string processor_name();   ///< as the kernel names it
 int processor_threads();        ///< hardware threads that this process may use
 double memory_bytes();          ///< of the machine
-double peak_memory_bytes();     ///< largest resident size of this process so far
+double peak_memory_bytes();     ///< largest resident size of this process since the last reset
+void reset_peak_memory();       ///< a new measurement starts; does nothing where Linux is too old
 
 /// Bytes a second that all threads together read and write in a[i] = b[i] + s·c[i], best of a
 /// few runs over arrays that exceed the caches. Takes about half a second.

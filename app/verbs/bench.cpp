@@ -105,6 +105,7 @@ int run_bench(const BenchOptions& options) {
   for (const BenchCase& test : quick_suite()) {
     for (const Build build : {Build::cpu32, Build::cuda32}) {
       if (!build_available(build)) continue;
+      reset_peak_memory();
       HeadlessJob job;
       job.scene = load_scene(test.scene, test.overrides);
       job.build = build;
