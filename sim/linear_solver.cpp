@@ -1,6 +1,7 @@
 #include "sim/linear_solver.h"
 
 #include <cmath>
+#include <limits>
 
 #include "kernels/lanes.h"
 
@@ -112,6 +113,11 @@ struct NewDirection {
   ICLOTH_HD void operator()(Index i) const { p[i] = z[i] + beta * p[i]; }
 };
 
+struct Spoil {
+  View<Vec3r> x;
+  ICLOTH_HD void operator()(Index i) const { x[i].x = std::numeric_limits<Real>::quiet_NaN(); }
+};
+
 }  // namespace
 
 void BlockMatrix::set_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
@@ -162,7 +168,7 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
 
   const double bb = reduce("implicit.residual", n, 0.0, Norm2{b}, Sum{});
   LinearSolution solution;
-  if (!(bb > 0)) return solution;
+  if (bb == 0) return solution;
   multiply(x);
   Dots dots = residual();
   p_.copy_from(z_);
@@ -184,6 +190,8 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   }
   multiply(x);
   solution.residual = std::sqrt(residual().rr / bb);
+  // No numbers in, no numbers out: an x that merely stayed zero would pass for a solution.
+  if (!std::isfinite(solution.residual)) for_each("implicit.spoil", n, Spoil{x});
   return solution;
 }
 
