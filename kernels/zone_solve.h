@@ -8,7 +8,8 @@
 // 2 m_i / Σm, which makes μ independent of the size of the zone (the scaling of ARCSim); the
 // decrease test uses the preconditioned slope g·d in place of ‖ΔX‖²; X' of the Chebyshev step is
 // the iterate before (Wang 2015); the iteration also ends when no constraint is short by more than
-// a fifth of δ, since single precision cannot resolve a step of 10⁻¹² m.
+// a fifth of δ, since single precision cannot resolve a step of 10⁻¹² m; and a free zone is then
+// shifted so that it keeps its momentum.
 #pragma once
 
 #include "kernels/parallel.h"
@@ -34,6 +35,15 @@ struct ZoneSettings {
 struct ZoneResult {
   Index iterations;
   Real violation;  ///< largest δ − n·g left [m]
+};
+
+/// Mass and Σ m (x − x*) of some vertices.
+struct ZoneMomentum {
+  double mass;
+  Vec3d moved;
+  ICLOTH_HD friend ZoneMomentum operator+(ZoneMomentum a, ZoneMomentum b) {
+    return {a.mass + b.mass, a.moved + b.moved};
+  }
 };
 
 /// Buffers over all zones; a zone owns one range of constraints and one of active vertices.
@@ -116,6 +126,32 @@ struct SolveZone {
     return penalties + 0.5 * distance;
   }
 
+  /// The minimum keeps the momentum of a zone that touches nothing fixed, but the iteration ends
+  /// before, and Jacobi steps do not. Moving the zone back as a whole changes none of its gaps.
+  template <class Team>
+  ICLOTH_HD void restore_momentum(Team& team, Index zone) const {
+    const Index c0 = z.constraint_first[zone], v0 = z.vertex_first[zone];
+    const Index count = z.vertex_first[zone + 1] - v0;
+    const Index fixed = team.reduce(
+        z.constraint_first[zone + 1] - c0, Index{0},
+        [&](Index k) {
+          const Index* slot = z.constraints[c0 + k].slot.v;
+          return slot[0] < 0 || slot[1] < 0 || slot[2] < 0 || slot[3] < 0 ? 1 : 0;
+        },
+        Sum{});
+    if (fixed != 0) return;
+    const ZoneMomentum sum = team.reduce(
+        count, ZoneMomentum{0, {}},
+        [&](Index k) {
+          const double mass = static_cast<double>(z.mass[v0 + k]);
+          const Vec3d moved = convert<double>(z.x[v0 + k] - z.target[v0 + k]);
+          return ZoneMomentum{mass, mass * moved};
+        },
+        Sum{});
+    const Vec3r shift = convert<Real>((1 / sum.mass) * sum.moved);
+    team.for_each(count, [&](Index k) { z.x[v0 + k] -= shift; });
+  }
+
   template <class Team>
   ICLOTH_HD void operator()(Team& team, Index zone) const {
     const Index c0 = z.constraint_first[zone], nc = z.constraint_first[zone + 1] - c0;
@@ -175,6 +211,7 @@ struct SolveZone {
       });
       value = objective(team, zone, inverse_mean, Real(0));
     }
+    restore_momentum(team, zone);
     team.single([&] { z.result[zone] = {static_cast<Index>(k), violation}; });
   }
 };
