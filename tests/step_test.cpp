@@ -1,0 +1,354 @@
+// Whole steps through the public interface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "sim/intersections.h"
+#include "sim/simulator.h"
+#include "tests/small_scenes.h"
+
+namespace icloth {
+namespace {
+
+using testing::hanging;
+using testing::lying;
+using testing::make_obstacle;
+using testing::make_sheet;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+std::shared_ptr<Scene> new_scene() {
+  auto scene = std::make_shared<Scene>();
+  scene->name = "test";
+  scene->parameters.air_density = 0;
+  return scene;
+}
+
+/// A sheet just over a ball.
+std::shared_ptr<Scene> ball_scene(Index triangles = 300) {
+  auto scene = new_scene();
+  scene->cloths.push_back(make_sheet(lying(0.4, triangles), {0.01, 0.112, 0.02}));
+  scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 320), {}));
+  return scene;
+}
+
+/// Faces of all objects, and a group number that leaves obstacle pairs out.
+struct Soup {
+  std::vector<Triangle> faces;
+  std::vector<int> group;
+
+  explicit Soup(const Scene& scene) {
+    Index first = 0;
+    const auto add = [&](const TriangleMesh& mesh, int g) {
+      for (const Triangle& t : mesh.faces) {
+        faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+        group.push_back(g);
+      }
+      first += static_cast<Index>(mesh.positions.size());
+    };
+    for (const Cloth& cloth : scene.cloths) add(cloth.mesh, 0);
+    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.mesh, -1);
+  }
+  std::size_t intersections(const Simulator& simulator) const {
+    return find_intersections(simulator.snapshot().positions, faces, group).size();
+  }
+};
+
+/// Steps that must be accepted, without a crossing pair of faces after any of them.
+void run_cleanly(Simulator& simulator, int steps) {
+  const Soup soup(simulator.scene());
+  for (int k = 0; k < steps; ++k) {
+    const StepReport report = simulator.step({});
+    ASSERT_TRUE(report.accepted) << "step " << k;
+    ASSERT_EQ(report.impacts_left, 0) << "step " << k;
+    ASSERT_EQ(soup.intersections(simulator), 0u) << "step " << k;
+  }
+}
+
+Vec3d mean_position(const Simulator& simulator, std::size_t vertices) {
+  const Snapshot s = simulator.snapshot();
+  Vec3d sum;
+  for (std::size_t i = 0; i < vertices; ++i) sum += s.positions[i];
+  return (1 / static_cast<double>(vertices)) * sum;
+}
+
+bool same_state(const Snapshot& a, const Snapshot& b) {
+  return a.step == b.step && a.time == b.time && a.positions == b.positions &&
+         a.velocities == b.velocities;
+}
+
+class Builds : public ::testing::TestWithParam<Build> {
+ protected:
+  void SetUp() override {
+    std::string reason;
+    if (!build_available(GetParam(), &reason)) GTEST_SKIP() << reason;
+  }
+  std::unique_ptr<Simulator> make(std::shared_ptr<const Scene> scene) const {
+    return make_simulator(GetParam(), std::move(scene));
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Step, Builds, ::testing::Values(Build::cpu32, Build::cpu64, Build::cuda32),
+                         [](const auto& instance) {
+                           return std::string(build_name(instance.param));
+                         });
+
+TEST_P(Builds, FreeFallIsBackwardEuler) {
+  auto scene = new_scene();
+  scene->cloths.push_back(make_sheet(lying(0.3, 200), {}));
+  scene->parameters.cg_tolerance = 1e-6;  // it bounds the error of every step
+  const auto simulator = make(scene);
+  const std::vector<Vec3d> start = simulator->snapshot().positions;
+  const double dt = scene->parameters.time_step, g = scene->parameters.gravity_y;
+  for (int n = 1; n <= 40; ++n) {
+    ASSERT_TRUE(simulator->step({}).accepted);
+    const double t = n * dt, fall = 0.5 * g * t * (t + dt);
+    const std::vector<Vec3d> x = simulator->snapshot().positions;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_NEAR(x[i].y - start[i].y, fall, 1e-5 * std::fabs(fall) + 1e-7);
+      EXPECT_NEAR(x[i].x, start[i].x, 1e-5 * std::fabs(fall) + 1e-7);
+    }
+  }
+  EXPECT_NEAR(simulator->time(), 40 * dt, 1e-12);
+}
+
+TEST_P(Builds, PinnedVerticesDoNotMoveByABit) {
+  auto scene = new_scene();
+  GridMesh grid = make_grid(hanging(0.3, 200));
+  scene->cloths.push_back(make_sheet(hanging(0.3, 200), {0.123, 0.456, 0.789}));
+  scene->cloths[0].pins = grid_vertices(grid, "top");
+  scene->parameters.wind_z = 4;
+  scene->parameters.air_density = 1;
+  const auto simulator = make(scene);
+  const Snapshot start = simulator->snapshot();
+  for (int k = 0; k < 30; ++k) ASSERT_TRUE(simulator->step({}).accepted);
+  const Snapshot end = simulator->snapshot();
+  for (const Index pin : scene->cloths[0].pins) {
+    EXPECT_TRUE(end.positions[at(pin)] == start.positions[at(pin)]);
+    EXPECT_TRUE(end.velocities[at(pin)] == Vec3d{});
+  }
+  EXPECT_GT(norm(end.positions[0] - start.positions[0]), 1e-3);
+}
+
+TEST_P(Builds, WindLiftsAFlag) {
+  auto scene = new_scene();
+  GridMesh grid = make_grid(hanging(0.3, 200));
+  scene->cloths.push_back(make_sheet(hanging(0.3, 200), {}));
+  scene->cloths[0].pins = grid_vertices(grid, "top");
+  scene->parameters.wind_z = 5;
+  const auto still = make(scene);  // without air the wind does nothing
+  auto windy = std::make_shared<Scene>(*scene);
+  windy->parameters.air_density = 1;
+  const auto blown = make(windy);
+  for (int k = 0; k < 40; ++k) {
+    ASSERT_TRUE(still->step({}).accepted);
+    ASSERT_TRUE(blown->step({}).accepted);
+  }
+  EXPECT_LT(std::fabs(mean_position(*still, grid.mesh.positions.size()).z), 0.005);
+  EXPECT_GT(mean_position(*blown, grid.mesh.positions.size()).z, 0.03);
+}
+
+TEST_P(Builds, SheetOnABallNeverIntersects) {
+  const auto simulator = make(ball_scene());
+  run_cleanly(*simulator, 60);
+  EXPECT_GT(mean_position(*simulator, simulator->scene().cloths[0].mesh.positions.size()).y, -0.1);
+}
+
+TEST_P(Builds, TwoSheetsOnABoxNeverIntersect) {
+  auto scene = new_scene();
+  scene->cloths.push_back(make_sheet(lying(0.3, 200), {0.003, 0.06, 0.002}));
+  scene->cloths.push_back(make_sheet(lying(0.25, 150), {-0.02, 0.09, 0.01}));
+  scene->obstacles.push_back(make_obstacle(make_box({0.15, 0.1, 0.15}, 0.05), {}));
+  run_cleanly(*make(scene), 60);
+}
+
+TEST_P(Builds, ImpactZonesAloneHoldTheClothToo) {
+  auto scene = ball_scene(150);
+  scene->parameters.proximity_enabled = false;
+  const auto simulator = make(scene);
+  run_cleanly(*simulator, 40);
+}
+
+TEST_P(Builds, SnapshotAndRestoreGiveTheSameStateAndFuture) {
+  const auto simulator = make(ball_scene(150));
+  for (int k = 0; k < 20; ++k) simulator->step({});
+  const Snapshot middle = simulator->snapshot();
+  const std::uint64_t hash = simulator->state_hash();
+  for (int k = 0; k < 10; ++k) simulator->step({});
+  EXPECT_NE(simulator->state_hash(), hash);
+  simulator->restore(middle);
+  EXPECT_TRUE(same_state(simulator->snapshot(), middle));
+  EXPECT_EQ(simulator->state_hash(), hash);
+  EXPECT_EQ(simulator->step_index(), 20);
+  const auto other = make(simulator->scene().cloths.empty() ? nullptr : ball_scene(150));
+  other->restore(middle);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
+  Snapshot wrong = middle;
+  wrong.positions.pop_back();
+  EXPECT_THROW(simulator->restore(wrong), std::invalid_argument);
+}
+
+TEST_P(Builds, AGrabbedSheetFollowsTheHandUntilReleased) {
+  auto scene = new_scene();
+  scene->cloths.push_back(make_sheet(lying(0.2, 100), {}));
+  const auto simulator = make(scene);
+  const std::size_t vertices = scene->cloths[0].mesh.positions.size();
+  InputEvent grab;
+  grab.handle = 7;
+  grab.face = 50;
+  grab.barycentric = {0.2, 0.3, 0.5};
+  const Triangle& f = scene->cloths[0].mesh.faces[50];
+  const std::vector<Vec3d>& x = scene->cloths[0].mesh.positions;
+  grab.target = 0.2 * x[at(f[0])] + 0.3 * x[at(f[1])] + 0.5 * x[at(f[2])];
+  simulator->step(std::vector{grab});
+  ASSERT_EQ(simulator->handles().size(), 1u);
+  InputEvent move;
+  move.kind = InputEvent::Kind::move;
+  move.handle = 7;
+  for (int k = 1; k <= 50; ++k) {
+    move.target = grab.target + Vec3d{0.006 * k, 0.002 * k, 0};
+    ASSERT_TRUE(simulator->step(std::vector{move}).accepted);
+  }
+  for (int k = 0; k < 20; ++k) simulator->step({});
+  const HandleState held = simulator->handles().at(0);
+  EXPECT_EQ(held.handle, 7);
+  EXPECT_LT(norm(held.hit - held.target), 0.01);
+  EXPECT_GT(mean_position(*simulator, vertices).x, 0.15);
+
+  InputEvent release;
+  release.kind = InputEvent::Kind::release;
+  release.handle = 7;
+  const double before = mean_position(*simulator, vertices).y;
+  simulator->step(std::vector{release});
+  EXPECT_TRUE(simulator->handles().empty());
+  for (int k = 0; k < 30; ++k) simulator->step({});
+  EXPECT_LT(mean_position(*simulator, vertices).y, before - 0.2);
+}
+
+/// Slide of a sheet on a box tilted by tan α = 0.3, in half a second [m].
+double slide(std::unique_ptr<Simulator> simulator) {
+  const std::size_t vertices = simulator->scene().cloths[0].mesh.positions.size();
+  for (int k = 0; k < 10; ++k) simulator->step({});  // lies down
+  const Vec3d start = mean_position(*simulator, vertices);
+  for (int k = 0; k < 50; ++k) EXPECT_TRUE(simulator->step({}).accepted);
+  return norm(mean_position(*simulator, vertices) - start);
+}
+
+TEST_P(Builds, FrictionHoldsOnASlope) {
+  const auto scene_with = [](double friction) {
+    auto scene = new_scene();
+    const double angle = std::atan(0.3), c = std::cos(angle), s = std::sin(angle);
+    const auto tilt = [&](Vec3d p) { return Vec3d{c * p.x - s * p.y, s * p.x + c * p.y, p.z}; };
+    scene->cloths.push_back(make_sheet(lying(0.15, 100), {0, 0.011, 0}));
+    scene->obstacles.push_back(make_obstacle(make_box({0.8, 0.02, 0.3}, 0.1), {}));
+    for (Vec3d& p : scene->cloths[0].mesh.positions) p = tilt(p);
+    for (Vec3d& p : scene->obstacles[0].mesh.positions) p = tilt(p);
+    scene->parameters.friction_obstacle = friction;
+    return scene;
+  };
+  EXPECT_LT(slide(make(scene_with(0.6))), 0.002);
+  // Coulomb's law alone gives ½ (g sin α − μ g cos α) t² = 0.23 m, from rest.
+  EXPECT_GT(slide(make(scene_with(0.1))), 0.1);
+}
+
+/// A refused step keeps the state before it bit for bit, and says why.
+void expect_refused(Simulator& simulator, bool finite) {
+  const Snapshot before = simulator.snapshot();
+  const std::uint64_t hash = simulator.state_hash();
+  const StepReport report = simulator.step({});
+  EXPECT_FALSE(report.accepted);
+  EXPECT_EQ(report.finite, finite);
+  EXPECT_GT(report.retries, 0);
+  EXPECT_TRUE(same_state(simulator.snapshot(), before));
+  EXPECT_EQ(simulator.state_hash(), hash);
+  EXPECT_EQ(report.state_hash, hash);
+  if (!finite) return;
+  ASSERT_FALSE(report.offending.empty());
+  EXPECT_LE(report.offending.size(), 100u);
+  const auto vertices = static_cast<Index>(before.positions.size());
+  for (const OffendingPair& pair : report.offending)
+    for (const Index v : pair.vertices) EXPECT_TRUE(v >= 0 && v < vertices);
+}
+
+/// A sheet between two boxes that close on it.
+std::shared_ptr<Scene> pinch_scene() {
+  auto scene = new_scene();
+  scene->cloths.push_back(make_sheet(lying(0.1, 60), {}));
+  for (const double side : {-1.0, 1.0}) {
+    scene->obstacles.push_back(make_obstacle(make_box({0.2, 0.02, 0.2}, 0.1), {0, side * 0.02, 0}));
+    scene->obstacles.back().motion = {{0, {}, {}}, {0.2, {0, side * -0.012, 0}, {}}};
+  }
+  return scene;
+}
+
+TEST_P(Builds, AnInfeasiblePinchIsRefused) {
+  const auto simulator = make(pinch_scene());
+  const Soup soup(simulator->scene());
+  bool refused = false;
+  for (int k = 0; k < 20 && !refused; ++k) {
+    const Snapshot before = simulator->snapshot();
+    const StepReport report = simulator->step({});
+    refused = !report.accepted;
+    EXPECT_EQ(soup.intersections(*simulator), 0u) << k;
+    EXPECT_TRUE(!refused || same_state(simulator->snapshot(), before));
+  }
+  ASSERT_TRUE(refused);
+  expect_refused(*simulator, true);
+}
+
+TEST_P(Builds, NumbersThatAreNotFiniteAreRefused) {
+  const auto simulator = make(ball_scene(100));
+  for (int k = 0; k < 5; ++k) simulator->step({});
+  Parameters wrong = simulator->parameters();
+  const Parameters sane = wrong;
+  for (const double gravity :
+       {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    wrong.gravity_y = gravity;
+    simulator->set_parameters(wrong);
+    expect_refused(*simulator, false);
+  }
+  // And goes on as if nothing had happened.
+  simulator->set_parameters(sane);
+  EXPECT_TRUE(simulator->step({}).accepted);
+}
+
+TEST_P(Builds, HugeForcesNeverPullTheClothThroughABody) {
+  const auto simulator = make(ball_scene(60));
+  const Soup soup(simulator->scene());
+  Parameters huge = simulator->parameters();
+  huge.gravity_y = -1e9;
+  simulator->set_parameters(huge);
+  const Snapshot before = simulator->snapshot();
+  const StepReport report = simulator->step({});
+  EXPECT_GT(report.substeps + report.retries, 10);
+  EXPECT_EQ(soup.intersections(*simulator), 0u);
+  EXPECT_EQ(report.accepted, !same_state(simulator->snapshot(), before));
+}
+
+class Threads : public ::testing::TestWithParam<Build> {
+ protected:
+  void TearDown() override { set_thread_count(0); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Step, Threads, ::testing::Values(Build::cpu32, Build::cpu64),
+                         [](const auto& instance) {
+                           return std::string(build_name(instance.param));
+                         });
+
+TEST_P(Threads, DoNotChangeABit) {
+  auto scene = ball_scene(600);
+  scene->cloths.push_back(make_sheet(lying(0.3, 300), {-0.01, 0.13, 0.01}));
+  std::vector<std::vector<std::uint64_t>> hashes;
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    const auto simulator = make_simulator(GetParam(), scene);
+    hashes.emplace_back();
+    for (int k = 0; k < 60; ++k) hashes.back().push_back(simulator->step({}).state_hash);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+}  // namespace
+}  // namespace icloth
