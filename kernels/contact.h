@@ -43,10 +43,9 @@ struct ContactLaw {
 };
 
 /// start: Σ w v at the start of the step; end: the same at its end, expected (from gravity alone)
-/// or solved [m/s]; inverse_mass: Σ w²/m of the free corners [1/kg]; shared: the same with the
-/// contacts beside that carry a part of the load, used when not solved.
+/// or solved [m/s]; inverse_mass: Σ w²/m of the free corners [1/kg].
 ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law, Vec3r start,
-                                          Vec3r end, bool solved, Real inverse_mass, Real shared) {
+                                          Vec3r end, bool solved, Real inverse_mass) {
   ContactTerm t{};
   // Gravity alone is no good guess for the normal motion: mostly something carries the cloth.
   const Real predicted = end_gap(c, solved ? end : start, law.dt);
@@ -58,9 +57,11 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
   const Real push = law.dt * k * (law.thickness - c.gap) - kn * approach;
   // Across: Coulomb's impulse μN as a drag. Before a solve, the drag with which the expected slide
   // v̂ (1 − r), r = μN/(m|v̂|), comes out of v̂ / (1 + drag/m); after one, the secant μN/|v|.
-  // The load is guessed from gravity all the same: at rest it is all that presses.
-  Real normal_impulse = law.dt * k * (law.thickness - end_gap(c, end, law.dt));
-  if (!solved) normal_impulse /= Real(1) + kn * shared;
+  Real normal_impulse = law.dt * k * (law.thickness - predicted);
+  // Before a solve: what the present compression carries, and what stops the approach.
+  const Real carried = law.dt * k * std::fmax(law.thickness - c.gap, Real(0));
+  const Real stop = std::fmax(-approach, Real(0)) / inverse_mass;
+  if (!solved) normal_impulse = std::fmin(normal_impulse, carried + stop);
   const Vec3r slide = end - dot(c.normal, end) * c.normal;
   const Real speed = norm(slide), limit = c.friction * normal_impulse;
   const Real mass = Real(1) / inverse_mass, stick = Real(1e3) * mass;

@@ -168,36 +168,13 @@ struct ContactMotion {
 struct ContactTerms {
   ContactMotion motion;
   ContactLaw law;
-  View<const Index> contact_first, contact_entries;
   View<ContactTerm> term;
-
-  ICLOTH_HD Vec3r start(Index i) const { return apply(motion.contacts[i].s, motion.v); }
-
-  /// Contacts share the load: Σ_j a_j (n_i·n_j) Σ w_i w_j / m over the touching contacts j of the
-  /// free corners, per area of contact i [1/kg]. Without neighbours this is Σ w²/m.
-  ICLOTH_HD Real shared_mobility(Index i, Real own) const {
-    const Contact& c = motion.contacts[i];
-    Real sum = 0;
-    for (int a = 0; a < 4; ++a) {
-      const Index v = c.s.v[a];
-      if (!(motion.inverse_mass[v] > 0)) continue;
-      for (Index k = contact_first[v]; k < contact_first[v + 1]; ++k) {
-        const Index entry = contact_entries[k];
-        const Contact& other = motion.contacts[entry / 4];
-        if (entry / 4 != i && !(end_gap(other, start(entry / 4), law.dt) < law.thickness)) continue;
-        sum += c.s.w[a] * motion.inverse_mass[v] * other.s.w[entry % 4] * other.area *
-               dot(c.normal, other.normal);
-      }
-    }
-    return std::fmax(sum / c.area, own);
-  }
 
   ICLOTH_HD void operator()(Index i) const {
     const Contact& c = motion.contacts[i];
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) mobility += c.s.w[a] * c.s.w[a] * motion.inverse_mass[c.s.v[a]];
-    const Real shared = motion.solved ? mobility : shared_mobility(i, mobility);
-    term[i] = contact_term(c, law, start(i), motion.end(i), motion.solved, mobility, shared);
+    term[i] = contact_term(c, law, apply(c.s, motion.v), motion.end(i), motion.solved, mobility);
   }
 };
 
@@ -364,9 +341,8 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
                        step.dt * step.gravity(), false};
   // The repulsion acts one way only; which contacts close is known for certain after a solve.
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
-    for_each(
-        "implicit.contact_terms", contacts.size(),
-        ContactTerms{motion, law, incidence.first(), incidence.entries(), contact_terms_.view()});
+    for_each("implicit.contact_terms", contacts.size(),
+             ContactTerms{motion, law, contact_terms_.view()});
     for_each("implicit.finish_rows", mesh.cloth_vertices,
              FinishRow{matrix_.row_first.view(), incidence.first(), incidence.entries(),
                        matrix_.value.view(), contacts.view(), contact_terms_.view(),
