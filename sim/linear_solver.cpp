@@ -1,7 +1,6 @@
 #include "sim/linear_solver.h"
 
 #include <cmath>
-#include <limits>
 
 #include "kernels/lanes.h"
 
@@ -115,7 +114,7 @@ struct NewDirection {
 
 struct Spoil {
   View<Vec3r> x;
-  ICLOTH_HD void operator()(Index i) const { x[i].x = std::numeric_limits<Real>::quiet_NaN(); }
+  ICLOTH_HD void operator()(Index i) const { x[i].x = static_cast<Real>(NAN); }
 };
 
 }  // namespace
