@@ -47,8 +47,7 @@ struct ContactLaw {
 ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law, Vec3r start,
                                           Vec3r end, bool solved, Real inverse_mass) {
   ContactTerm t{};
-  // Gravity alone is no good guess for the normal motion: mostly something carries the cloth.
-  const Real predicted = end_gap(c, solved ? end : start, law.dt);
+  const Real predicted = end_gap(c, end, law.dt);
   if (!(predicted < law.thickness)) return t;
   t.active = 1;
   // Along the normal: dt k a (h − gap − dt n·Σ w (v + Δv)).
