@@ -50,8 +50,7 @@ RandomFace random_face(std::mt19937& random, double strain) {
   Vec3r v = point();
   v = normalized(v - dot(u, v) * u);
   const Vec3r uv[3] = {{0, 0, 0}, {a, 0, 0}, {b, c, 0}};
-  for (int k = 0; k < 3; ++k)
-    f.x[k] = uv[k].x * u + uv[k].y * v + (strain * 0.01) * point();
+  for (int k = 0; k < 3; ++k) f.x[k] = uv[k].x * u + uv[k].y * v + (strain * 0.01) * point();
   return f;
 }
 
@@ -126,8 +125,7 @@ TEST(Membrane, ProjectedHessianIsPositiveSemiDefinite) {
   for (const double strain : {0.05, 0.5, 3.0}) {  // 3: inverted and collapsed faces too
     for (int trial = 0; trial < 300; ++trial) {
       const RandomFace f = random_face(random, strain);
-      const Stiffness k =
-          stiffness_at(interlock(true), green_strain(face_frame(f.x, f.inverse)));
+      const Stiffness k = stiffness_at(interlock(true), green_strain(face_frame(f.x, f.inverse)));
       const auto h = hessian(f, k, true);
       EXPECT_LT((h - h.transpose()).norm(), 1e-12 * h.norm());
       const double smallest =
@@ -153,8 +151,8 @@ TEST(Membrane, UniaxialStretchGivesTheMeasuredRows) {
   // 16.7 % along weft: row 1; along warp: row 5. Small shear has modulus c33.
   const Fabric fabric = interlock(true);
   const auto at = [&](double stretch_u, double stretch_v) {
-    return stiffness_at(fabric, {0.5 * (stretch_u * stretch_u - 1), 0,
-                                 0.5 * (stretch_v * stretch_v - 1)});
+    return stiffness_at(fabric,
+                        {0.5 * (stretch_u * stretch_u - 1), 0, 0.5 * (stretch_v * stretch_v - 1)});
   };
   const double full = 7.0 / 6.0;
   EXPECT_NEAR(at(full, 1).k11, 2 * 46.364765, 1e-3);

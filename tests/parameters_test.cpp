@@ -103,8 +103,7 @@ TEST(Parameters, RefusesBadValuesWithOneLine) {
     EXPECT_FALSE(contains(message, "\n"));
   }
   EXPECT_TRUE(contains(error_of("time_step", "0"), "step.time_step"));
-  EXPECT_TRUE(contains(error_of("time_step", "0"), "1e-04 to 0.1 s"))
-      << error_of("time_step", "0");
+  EXPECT_TRUE(contains(error_of("time_step", "0"), "1e-04 to 0.1 s")) << error_of("time_step", "0");
 }
 
 TEST(Parameters, UnknownKeyNamesTheNearest) {
