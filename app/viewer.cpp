@@ -324,7 +324,14 @@ std::optional<Vec3d> Viewer::graspable_point() const {
     const Projected at = camera_.project(centre, width, height);
     if (at.depth <= 0 || !in_view(view_.x + at.x, view_.y + at.y)) continue;
     const Pick under = pick_at(view_.x + at.x, view_.y + at.y);
-    if (under.reachable() && norm(under.point - centre) < 0.02) best = centre;
+    if (!under.reachable() || norm(under.point - centre) > 0.02) continue;
+    // Well inside: the cloth may have swung a little by the time the mouse gets there.
+    constexpr double kMargin = 14;  // pixels
+    bool inside = true;
+    for (const auto& [dx, dy] :
+         {std::pair{-kMargin, 0.0}, {kMargin, 0.0}, {0.0, -kMargin}, {0.0, kMargin}})
+      inside = inside && pick_at(view_.x + at.x + dx, view_.y + at.y + dy).reachable();
+    if (inside) best = centre;
   }
   return best;
 }
