@@ -25,19 +25,6 @@ ICLOTH_HD inline void include(Box& a, const Box& b) {
   }
 }
 
-/// Written so that a NaN bound overlaps.
-ICLOTH_HD inline bool overlap(const Box& a, const Box& b) {
-  bool apart = false;
-  for (int k = 0; k < 3; ++k) apart = apart || a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k];
-  return !apart;
-}
-
-ICLOTH_HD inline bool inside(Vec3r x, const Box& box) {
-  return static_cast<float>(x.x) >= box.lo[0] && static_cast<float>(x.x) <= box.hi[0] &&
-         static_cast<float>(x.y) >= box.lo[1] && static_cast<float>(x.y) <= box.hi[1] &&
-         static_cast<float>(x.z) >= box.lo[2] && static_cast<float>(x.z) <= box.hi[2];
-}
-
 /// Smallest box around two points, padded; rounding goes outward.
 ICLOTH_HD inline Box swept_box(Vec3r a, Vec3r b, Real pad) {
   const Real p[3] = {a.x, a.y, a.z}, q[3] = {b.x, b.y, b.z};

@@ -214,10 +214,10 @@ void Tree::build(View<const Box> boxes, Index first) {
     total += count;
   }
   nodes_.resize(total);
-  refit(boxes, first);
+  refit(boxes);
 }
 
-void Tree::refit(View<const Box> boxes, Index) {
+void Tree::refit(View<const Box> boxes) {
   if (levels_ == 0) return;
   for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, items_.view(), nodes_.view()});
   for (int l = 1; l < levels_; ++l)
@@ -248,7 +248,7 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, bool after_impact
     if (rebuild)
       tree.build(upto, first);
     else
-      tree.refit(upto, first);
+      tree.refit(upto);
   };
   update(cloth_faces_, face_box_, 0, mesh.cloth_faces);
   update(cloth_edges_, edge_box_, 0, mesh.cloth_edges);

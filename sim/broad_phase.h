@@ -17,7 +17,7 @@ class Tree {
   /// Sorts the elements anew (Morton order of their boxes' centres), then refits.
   void build(View<const Box> boxes, Index first);
   /// New boxes, old order.
-  void refit(View<const Box> boxes, Index first);
+  void refit(View<const Box> boxes);
   bool empty() const { return items_.size() == 0; }
   TreeView view() const;
 
