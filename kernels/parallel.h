@@ -71,6 +71,13 @@ Index collect(const char* name, Index n, const F& f, Array<T>& out);
 template <class F>
 void for_each_team(const char* name, Index teams, const F& f);
 
+/// Calls f(team) once with a DeviceTeam: every thread of the device works on one problem, in one
+/// kernel on CUDA. `n`: the largest number of elements that f will give to the team's members.
+/// They are those of Team (kernels/team.h), and each is a barrier for the whole device; sums have
+/// an order that depends on their length alone, but differs between CPU and CUDA.
+template <class F>
+void with_device_team(const char* name, Index n, const F& f);
+
 }  // namespace icloth::ICLOTH_BUILD
 
 #if defined(__CUDACC__)

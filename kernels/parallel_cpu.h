@@ -91,30 +91,41 @@ T reduce_chunk(Index first, Index last, T identity, const F& shared_f, const Op&
   }
 }
 
+/// `for_each` without a row in the profile.
+template <class F>
+void for_each_index(Index n, const F& f) {
+  over_ranges(n, kForEachSerialBelow, kForEachGrain, [&f](Index first, Index last) {
+    const F local = f;
+    for (Index i = first; i < last; ++i) local(i);
+  });
+}
+
+/// `reduce` without a row in the profile.
+template <class T, class F, class Op>
+T reduce_indices(Index n, T identity, const F& f, const Op& op) {
+  const Index chunks = chunk_count(n, kReduceChunk);
+  const View<T> partial = scratch<T, 0>(chunks);
+  over_chunks(n, kReduceChunk, [&](Index c, Index first, Index last) {
+    partial[c] = reduce_chunk(first, last, identity, f, op);
+  });
+  T value = identity;
+  for (Index c = 0; c < chunks; ++c) value = op(value, partial[c]);
+  return value;
+}
+
 }  // namespace detail
 
 template <class F>
 void for_each(const char* name, Index n, const F& f) {
   const ProfileScope scope(name);
-  detail::over_ranges(n, detail::kForEachSerialBelow, detail::kForEachGrain,
-                      [&f](Index first, Index last) {
-                        const F local = f;
-                        for (Index i = first; i < last; ++i) local(i);
-                      });
+  detail::for_each_index(n, f);
 }
 
 template <class T, class F, class Op>
 T reduce(const char* name, Index n, T identity, const F& f, const Op& op) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64);
   const ProfileScope scope(name);
-  const Index chunks = detail::chunk_count(n, detail::kReduceChunk);
-  const View<T> partial = detail::scratch<T, 0>(chunks);
-  detail::over_chunks(n, detail::kReduceChunk, [&](Index c, Index first, Index last) {
-    partial[c] = detail::reduce_chunk(first, last, identity, f, op);
-  });
-  T value = identity;
-  for (Index c = 0; c < chunks; ++c) value = op(value, partial[c]);
-  return value;
+  return detail::reduce_indices(n, identity, f, op);
 }
 
 inline Index exclusive_scan(const char* name, View<const Index> counts, View<Index> offsets) {
@@ -181,4 +192,5 @@ void for_each_team(const char* name, Index teams, const F& f) {
 }  // namespace icloth::ICLOTH_BUILD
 
 #include "kernels/collect_cpu.h"
+#include "kernels/device_team_cpu.h"
 #include "kernels/sort_cpu.h"

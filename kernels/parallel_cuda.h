@@ -6,6 +6,7 @@
 
 #include <thrust/iterator/counting_iterator.h>
 
+#include <cstring>
 #include <cub/cub.cuh>
 #include <limits>
 #include <stdexcept>
@@ -17,8 +18,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
 
-inline constexpr int kThreads = 256;
-inline constexpr Index kReduceTile = 1024;  // elements a block combines: it decides the rounding
+inline constexpr int kThreads = 256;  // of a block
 
 inline unsigned block_count(Index n, Index per_block) {
   return (static_cast<unsigned>(n) + static_cast<unsigned>(per_block) - 1) /
@@ -77,52 +77,126 @@ __global__ void __launch_bounds__(Team::kThreads) team_kernel(const F f) {
   f(team, static_cast<Index>(blockIdx.x));
 }
 
-/// Block b combines f over its tile into partial[b]: strided in each thread, then by a tree.
-template <class T, class F, class Op>
-__global__ void __launch_bounds__(kThreads)
-    reduce_kernel(Index n, Index tile, T identity, const F f, const Op op, T* partial) {
+/// Combines one value of each thread of the block in a fixed order; every thread gets the result.
+template <class T, class Op>
+__device__ T combine_in_block(T value, const Op& op) {
+  // Raw bytes: shared variables must not have constructors.
   __shared__ alignas(16) unsigned char storage[kThreads * sizeof(T)];
   T* const shared = reinterpret_cast<T*>(storage);
   const auto me = static_cast<int>(threadIdx.x);
+  shared[me] = value;
+  for (int half = kThreads / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (me < half) shared[me] = op(shared[me], shared[me + half]);
+  }
+  __syncthreads();
+  const T result = shared[0];
+  __syncthreads();  // the next call uses the storage again
+  return result;
+}
+
+/// Elements that a block of a reduction combines: it decides the rounding, so it depends on n
+/// alone. One a thread while that makes no more than 1024 blocks.
+inline Index reduce_tile(Index n) {
+  constexpr Index kMostBlocks = 1024;
+  return kThreads * static_cast<Index>(block_count(n, kThreads * kMostBlocks));
+}
+
+/// Block b combines f over its tile into partial[b]; the block that ends last combines those.
+/// `ticket` is zero before and after.
+template <class T, class F, class Op>
+__global__ void __launch_bounds__(kThreads)
+    reduce_kernel(Index n, Index tile, T identity, const F f, const Op op, T* partial,
+                  unsigned* ticket, T* result) {
+  const auto me = static_cast<Index>(threadIdx.x);
   const std::int64_t first = static_cast<std::int64_t>(blockIdx.x) * tile;
   const std::int64_t last = first + tile < n ? first + tile : n;
   T value = identity;
   for (std::int64_t i = first + me; i < last; i += kThreads) {
     value = op(value, static_cast<T>(f(static_cast<Index>(i))));
   }
-  shared[me] = value;
-  for (int half = kThreads / 2; half > 0; half /= 2) {
-    __syncthreads();
-    if (me < half) shared[me] = op(shared[me], shared[me + half]);
+  value = combine_in_block(value, op);
+  __shared__ bool is_last;
+  if (me == 0) {
+    partial[blockIdx.x] = value;
+    __threadfence();  // the partial result is seen by whoever sees the ticket
+    is_last = atomicInc(ticket, gridDim.x - 1) == gridDim.x - 1;
   }
-  if (me == 0) partial[blockIdx.x] = shared[0];
+  __syncthreads();
+  if (!is_last) return;
+  __threadfence();
+  value = identity;
+  for (unsigned t = threadIdx.x; t < gridDim.x; t += kThreads) value = op(value, partial[t]);
+  value = combine_in_block(value, op);
+  if (me == 0) *result = value;
 }
 
-/// Reads back what a first reduction wrote.
-template <class T>
-struct Element {
-  const T* values;
-  __device__ T operator()(Index i) const { return values[i]; }
+/// Where kernels leave numbers for the host: pinned host memory that the device writes into, so
+/// that waiting for the kernel is all it takes. One a host thread.
+class Mailbox {
+ public:
+  static constexpr std::size_t kBytes = 64;
+
+  /// The calling thread's, on its device.
+  static Mailbox& mine() {
+    thread_local Mailbox mailbox;
+    int device = 0;
+    ICLOTH_CUDA_CHECK("mailbox", cudaGetDevice(&device));
+    if (mailbox.device_ != device) mailbox.move_to(device);
+    return mailbox;
+  }
+  ~Mailbox() { release(); }
+
+  void* on_device() const { return on_device_; }
+  /// Counts the blocks of a reduction that have ended.
+  unsigned* ticket() const { return ticket_; }
+
+  /// Waits for the kernels and returns what they wrote.
+  template <class T>
+  T read(const char* name) const {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= kBytes);
+    ICLOTH_CUDA_CHECK(name, cudaStreamSynchronize(nullptr));
+    alignas(T) unsigned char value[sizeof(T)];
+    std::memcpy(value, on_host_, sizeof(T));
+    return *reinterpret_cast<T*>(value);
+  }
+
+ private:
+  Mailbox() = default;
+  void move_to(int device) {
+    release();
+    ICLOTH_CUDA_CHECK("mailbox", cudaHostAlloc(&on_host_, kBytes, cudaHostAllocMapped));
+    ICLOTH_CUDA_CHECK("mailbox", cudaHostGetDevicePointer(&on_device_, on_host_, 0));
+    ICLOTH_CUDA_CHECK("mailbox", cudaMalloc(&ticket_, sizeof *ticket_));
+    ICLOTH_CUDA_CHECK("mailbox", cudaMemset(ticket_, 0, sizeof *ticket_));
+    device_ = device;
+  }
+  /// Unchecked: it runs at program exit too, even after the driver has shut down.
+  void release() {
+    if (on_host_ != nullptr) static_cast<void>(cudaFreeHost(on_host_));
+    if (ticket_ != nullptr) static_cast<void>(cudaFree(ticket_));
+    on_host_ = on_device_ = nullptr;
+    ticket_ = nullptr;
+    device_ = -1;
+  }
+
+  int device_ = -1;
+  void *on_host_ = nullptr, *on_device_ = nullptr;
+  unsigned* ticket_ = nullptr;
 };
 
 /// `reduce` without a row in the profile.
 template <class T, class F, class Op>
 T reduce_on_device(const char* name, Index n, T identity, const F& f, const Op& op) {
   if (n <= 0) return identity;
-  const unsigned tiles = block_count(n, kReduceTile);
-  const View<T> partial = scratch<T, 1>(static_cast<Index>(tiles) + 1);
-  reduce_kernel<<<tiles, kThreads>>>(n, kReduceTile, identity, f, op, partial.data() + 1);
+  const Index tile = reduce_tile(n);
+  const unsigned tiles = block_count(n, tile);
+  const View<T> partial = scratch<T, 1>(static_cast<Index>(tiles));
+  const Mailbox& mailbox = Mailbox::mine();
+  reduce_kernel<<<tiles, kThreads>>>(n, tile, identity, f, op, partial.data(), mailbox.ticket(),
+                                     static_cast<T*>(mailbox.on_device()));
   check_launch(name);
-  const T* result = partial.data() + 1;
-  if (tiles > 1) {
-    const auto count = static_cast<Index>(tiles);
-    reduce_kernel<<<1, kThreads>>>(count, count, identity, Element<T>{result}, op, partial.data());
-    check_launch(name);
-    result = partial.data();
-  }
-  alignas(T) unsigned char value[sizeof(T)];
-  ICLOTH_CUDA_CHECK(name, cudaMemcpy(value, result, sizeof(T), cudaMemcpyDeviceToHost));
-  return *reinterpret_cast<T*>(value);
+  return mailbox.read<T>(name);
 }
 
 struct CountAt {
@@ -238,13 +312,13 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
     return 0;
   }
   out.resize(n);
-  Index* const count_on_device = detail::scratch<Index, 4>(1).data();
+  const detail::Mailbox& mailbox = detail::Mailbox::mine();
   detail::run_cub(name, [&](void* storage, std::size_t& bytes) {
     return cub::DeviceSelect::If(storage, bytes, thrust::counting_iterator<Index>(0),
-                                 out.view().data(), count_on_device, n, keep);
+                                 out.view().data(), static_cast<Index*>(mailbox.on_device()), n,
+                                 keep);
   });
-  Index count = 0;
-  memory::copy_to_host(&count, count_on_device, sizeof count);
+  const auto count = mailbox.read<Index>(name);
   out.resize(count);
   return count;
 }
@@ -252,7 +326,7 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
 template <class T, class F>
 Index collect(const char* name, Index n, const F& f, Array<T>& out) {
   const detail::CudaScope scope(name);
-  const View<Index> offsets = detail::scratch<Index, 5>(n);
+  const View<Index> offsets = detail::scratch<Index, 4>(n);
   detail::launch(name, n, detail::CountEmitted<T, F>{f, offsets});
   const Index total = detail::scan_on_device(name, offsets, offsets);
   out.resize(total);
@@ -264,8 +338,10 @@ template <class F>
 void for_each_team(const char* name, Index teams, const F& f) {
   const detail::CudaScope scope(name);
   if (teams <= 0) return;
-  detail::team_kernel<<<static_cast<unsigned>(teams), Team::kThreads>>>(f);
+  detail::team_kernel<<<static_cast<unsigned>(teams), Team::kThreads, Team::kSharedBytes>>>(f);
   detail::check_launch(name);
 }
 
 }  // namespace icloth::ICLOTH_BUILD
+
+#include "kernels/device_team_cuda.h"

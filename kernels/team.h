@@ -7,6 +7,7 @@
 
 #include <type_traits>
 
+#include "kernels/array.h"
 #include "kernels/platform.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -65,7 +66,34 @@ class Team {
     return combine(value, op);
   }
 
+  /// Copy of `view` that all threads reach fast: shared memory on CUDA while there is room, else
+  /// the view itself. What is written into it must be given back. Implies a barrier.
+  template <class T>
+  ICLOTH_HD View<T> borrow(View<T> view) {
+#if defined(__CUDA_ARCH__)
+    extern __shared__ __align__(16) unsigned char shared_memory[];
+    const std::size_t bytes = (static_cast<std::size_t>(view.size()) * sizeof(T) + 15) / 16 * 16;
+    if (bytes > kSharedBytes - borrowed_) return view;
+    const View<T> copy(reinterpret_cast<T*>(shared_memory + borrowed_), view.size());
+    borrowed_ += bytes;
+    for_each(view.size(), [&](Index i) { copy[i] = view[i]; });
+    return copy;
+#else
+    return view;
+#endif
+  }
+  /// Writes a borrowed copy back to where it came from. Implies a barrier.
+  template <class T>
+  ICLOTH_HD void give_back(View<const T> copy, View<T> view) const {
+    if (copy.data() == view.data()) return;
+    for_each(view.size(), [&](Index i) { view[i] = copy[i]; });
+  }
+
+  static constexpr std::size_t kSharedBytes = 32 * 1024;  ///< to borrow, of a team on CUDA
+
  private:
+  std::size_t borrowed_ = 0;
+
 #if defined(__CUDA_ARCH__)
   template <class T, class Op>
   __device__ static T combine(T value, const Op& op) {

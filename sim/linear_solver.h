@@ -50,6 +50,7 @@ class LinearSolver {
  private:
   Array<Vec3r> r_, z_, p_, q_;
   Array<Vec3r> contact_;  ///< H Σ w p of each contact
+  Array<LinearSolution> solution_;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,38 @@
+// A team of all threads of the CPU. Included by kernels/parallel_cpu.h; what it offers is said in
+// kernels/parallel.h. One thread runs the problem and hands out shares of its loops.
+#pragma once
+
+namespace icloth::ICLOTH_BUILD {
+
+class DeviceTeam {
+ public:
+  void barrier() const {}
+
+  template <class Body>
+  void for_each(Index n, const Body& body) const {
+    detail::for_each_index(n, body);
+  }
+  template <class Body>
+  void single(const Body& body) const {
+    body();
+  }
+  template <class T, class Body, class Op>
+  T reduce(Index n, T identity, const Body& body, const Op& op) const {
+    return detail::reduce_indices(n, identity, body, op);
+  }
+  template <class T>
+  View<T> borrow(View<T> view) const {
+    return view;
+  }
+  template <class T>
+  void give_back(View<const T>, View<T>) const {}
+};
+
+template <class F>
+void with_device_team(const char* name, Index, const F& f) {
+  const ProfileScope scope(name);
+  DeviceTeam team;
+  f(team);
+}
+
+}  // namespace icloth::ICLOTH_BUILD
