@@ -74,10 +74,10 @@ class Team {
     extern __shared__ __align__(16) unsigned char shared_memory[];
     const std::size_t bytes = (static_cast<std::size_t>(view.size()) * sizeof(T) + 15) / 16 * 16;
     if (bytes > kSharedBytes - borrowed_) return view;
-    const View<T> copy(reinterpret_cast<T*>(shared_memory + borrowed_), view.size());
+    auto* const copy = reinterpret_cast<std::remove_const_t<T>*>(shared_memory + borrowed_);
     borrowed_ += bytes;
     for_each(view.size(), [&](Index i) { copy[i] = view[i]; });
-    return copy;
+    return {copy, view.size()};
 #else
     return view;
 #endif

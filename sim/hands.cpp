@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace icloth {
 namespace {
@@ -12,13 +13,14 @@ Vec3d interpolate(const Triangle& t, Vec3d b, std::span<const Vec3d> field) {
   return b.x * field[at(t[0])] + b.y * field[at(t[1])] + b.z * field[at(t[2])];
 }
 
+/// Where hand `k` holds the cloth, by the corners of all hands.
+Vec3d hit(std::size_t k, Vec3d b, std::span<const Vec3d> corners) {
+  return b.x * corners[3 * k] + b.y * corners[3 * k + 1] + b.z * corners[3 * k + 2];
+}
+
 bool finite(Vec3d a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 }  // namespace
-
-Vec3d Hands::hit(const Held& held, std::span<const Vec3d> positions) const {
-  return interpolate(held.corners, held.barycentric, positions);
-}
 
 Hands::Held Hands::grab(const InputEvent& event, const Parameters& parameters,
                         std::span<const Vec3d> positions) const {
@@ -30,7 +32,7 @@ Hands::Held Hands::grab(const InputEvent& event, const Parameters& parameters,
   held.stiffness = event.stiffness > 0 ? event.stiffness : parameters.grab_stiffness;
   const double radius = event.radius > 0 ? event.radius : parameters.grab_radius;
   const Vec3d centre = interpolate(held.corners, held.barycentric, world_->rest);
-  const Vec3d start = hit(held, positions);
+  const Vec3d start = interpolate(held.corners, held.barycentric, positions);
   const Index object = world_->object[at(held.corners[0])];
   const WorldObject& cloth = world_->objects[at(object)];
   double total = 0;
@@ -74,14 +76,21 @@ void Hands::apply(std::span<const InputEvent> events, const Parameters& paramete
   }
 }
 
-void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec3d> positions) {
+std::vector<Index> Hands::watched() const {
+  std::vector<Index> vertices;
+  for (const Held& h : held_) vertices.insert(vertices.end(), h.corners.begin(), h.corners.end());
+  return vertices;
+}
+
+void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners) {
   const double reach = parameters.grab_max_speed * dt;
-  for (Held& h : held_) {
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    Held& h = held_[k];
     const Vec3d way = h.target - h.followed;
     const double distance = norm(way);
     h.followed = distance > reach ? h.followed + (reach / distance) * way : h.target;
     // A pull beyond the largest force would only stretch the patch.
-    const Vec3d here = hit(h, positions), pull = h.followed - here;
+    const Vec3d here = hit(k, h.barycentric, corners), pull = h.followed - here;
     const double force = h.stiffness * norm(pull);
     h.saturation = std::min(force / parameters.grab_max_force, 1.0);
     h.pulled_to = force > parameters.grab_max_force
@@ -90,25 +99,32 @@ void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec
   }
 }
 
-void Hands::springs(std::vector<double>& stiffness, std::vector<Vec3d>& target) const {
-  stiffness.assign(at(world_->cloth_vertices), 0.0);
-  target.assign(at(world_->cloth_vertices), Vec3d{});
+std::vector<HandSpring> Hands::springs() const {
+  std::map<Index, HandSpring> by_vertex;
   for (const Held& h : held_) {
     for (std::size_t k = 0; k < h.vertices.size(); ++k) {
-      const std::size_t v = at(h.vertices[k]);
+      HandSpring& spring =
+          by_vertex.try_emplace(h.vertices[k], h.vertices[k], 0.0, Vec3d{}).first->second;
       const double s = h.stiffness * h.share[k];
       // Several hands on one vertex: the stiffness adds up, the target is their weighted mean.
-      const double sum = stiffness[v] + s;
+      const double sum = spring.stiffness + s;
       if (!(sum > 0)) continue;
-      target[v] = (stiffness[v] / sum) * target[v] + (s / sum) * (h.pulled_to + h.offset[k]);
-      stiffness[v] = sum;
+      spring.target =
+          (spring.stiffness / sum) * spring.target + (s / sum) * (h.pulled_to + h.offset[k]);
+      spring.stiffness = sum;
     }
   }
+  std::vector<HandSpring> springs;
+  for (const auto& [vertex, spring] : by_vertex) springs.push_back(spring);
+  return springs;
 }
 
-std::vector<HandleState> Hands::states(std::span<const Vec3d> positions) const {
+std::vector<HandleState> Hands::states(std::span<const Vec3d> corners) const {
   std::vector<HandleState> out;
-  for (const Held& h : held_) out.push_back({h.handle, hit(h, positions), h.target, h.saturation});
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const Held& h = held_[k];
+    out.push_back({h.handle, hit(k, h.barycentric, corners), h.target, h.saturation});
+  }
   return out;
 }
 

@@ -9,6 +9,13 @@
 
 namespace icloth {
 
+/// A vertex that hands pull.
+struct HandSpring {
+  Index vertex;
+  double stiffness;  ///< [N/m]
+  Vec3d target;      ///< [m]
+};
+
 class Hands {
  public:
   explicit Hands(const World& world) : world_(&world) {}
@@ -18,16 +25,21 @@ class Hands {
   void apply(std::span<const InputEvent> events, const Parameters& parameters,
              std::span<const Vec3d> positions);
 
-  /// Moves the followed targets on by at most grab_max_speed · dt and works out the springs.
-  void advance(double dt, const Parameters& parameters, std::span<const Vec3d> positions);
+  /// Corners of the faces that were hit, three a hand: all that the rest has to know of the state.
+  std::vector<Index> watched() const;
+
+  /// Moves the followed targets on by at most grab_max_speed · dt and limits the pull. `corners`:
+  /// positions of the watched vertices [m].
+  void advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners);
 
   void clear() { held_.clear(); }
   bool empty() const { return held_.empty(); }
 
-  /// Dense springs of all cloth vertices: stiffness [N/m] (0: none) and target [m].
-  void springs(std::vector<double>& stiffness, std::vector<Vec3d>& target) const;
+  /// One spring for each pulled vertex, by ascending vertex.
+  std::vector<HandSpring> springs() const;
 
-  std::vector<HandleState> states(std::span<const Vec3d> positions) const;
+  /// `corners`: positions of the watched vertices [m].
+  std::vector<HandleState> states(std::span<const Vec3d> corners) const;
 
  private:
   struct Held {
@@ -41,7 +53,6 @@ class Hands {
     double stiffness = 0, saturation = 0;
   };
 
-  Vec3d hit(const Held& held, std::span<const Vec3d> positions) const;
   Held grab(const InputEvent& event, const Parameters& parameters,
             std::span<const Vec3d> positions) const;
 

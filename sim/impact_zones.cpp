@@ -313,7 +313,7 @@ void ImpactZones::order_by_zone(const StepContext& step) {
   sort_by_label(constraint_label_, kept_of_, constraint_first_);
 
   for (Array<Vec3r>* a : {&target_, &x_, &before_, &direction_}) a->resize(active);
-  for (Array<Real>* a : {&mass_, &slope_}) a->resize(active);
+  mass_.resize(active);
   for (Array<Real>* a : {&multiplier_, &shortfall_, &trial_}) a->resize(n);
   active_.resize(active);
   new_slot_.resize(active);
@@ -354,12 +354,13 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
                           x_.view(),
                           before_.view(),
                           direction_.view(),
-                          slope_.view(),
                           multiplier_.view(),
                           shortfall_.view(),
                           trial_.view(),
                           results_.view()};
-  for_each_team("impact_zones.solve", zones, SolveZone{arrays, settings});
+  const SolveZone solve{arrays, settings};
+  for_each_team("impact_zones.solve", zones, solve);
+  if (active_.size() > kLargestTeamZone) solve_large_zones(solve);
 
   largest_correction_ = reduce("impact_zones.correction", active_.size(), Real(0),
                                Correction{x_.view(), target_.view()}, Max{});
@@ -386,6 +387,13 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
       reduce("impact_zones.largest", zones, Index{0}, LargestZone{vertex_first_.view()}, Max{}));
   report.zone_iterations +=
       reduce("impact_zones.iterations", zones, Index{0}, ZoneIterations{results_.view()}, Max{});
+}
+
+void ImpactZones::solve_large_zones(const SolveZone& solve) {
+  compact("impact_zones.large", vertex_first_.size() - 1, IsLargeZone{solve}, picked_);
+  const Index size = active_.size() + constraints_.size();
+  for (const Index zone : picked_.download())
+    with_device_team("impact_zones.solve_large", size, SolveLargeZone{solve, zone});
 }
 
 void ImpactZones::back_to_candidate(StepContext& step) {

@@ -42,6 +42,7 @@ class ImpactZones {
   void merge(const Array<Impact>& impacts);
   void label_zones(const StepContext& step);
   void order_by_zone(const StepContext& step);
+  void solve_large_zones(const SolveZone& solve);
 
   Array<KeptImpact> kept_;  ///< sorted by key, merge
   Array<KeptImpact> unsorted_, sorted_;
@@ -63,7 +64,7 @@ class ImpactZones {
   Array<ZoneConstraint> constraints_;             ///< by zone, order_by_zone
   Array<Int4> zone_slots_;
   Array<Vec3r> target_, x_, before_, direction_;  ///< see ZoneArrays
-  Array<Real> mass_, slope_, multiplier_, shortfall_, trial_;
+  Array<Real> mass_, multiplier_, shortfall_, trial_;
   Array<ZoneResult> results_;
   Array<std::uint8_t> dirty_;
   Real largest_correction_ = 0;

@@ -1,6 +1,10 @@
 #include "sim/solver.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "kernels/device.h"
+#include "kernels/hand_out.h"
 #include "kernels/parallel.h"
 #include "sim/statistics.h"
 
@@ -40,6 +44,34 @@ struct EndVelocity {
   Real inverse_dt;
   ICLOTH_HD void operator()(Index i) const {
     v[i] = inverse_mass[i] > 0 ? inverse_dt * (x1[i] - x0[i]) : Vec3r{};
+  }
+};
+
+/// Velocity of an obstacle that moves from x0 to x1.
+struct ObstacleVelocity {
+  View<const Vec3r> x0, x1;
+  View<Vec3r> v;
+  Index first;
+  Real inverse_dt;
+  ICLOTH_HD void operator()(Index i) const {
+    v[first + i] = inverse_dt * (x1[first + i] - x0[first + i]);
+  }
+};
+
+struct Gather {
+  View<const Index> list;
+  View<const Vec3r> from;
+  View<Vec3r> to;
+  ICLOTH_HD void operator()(Index i) const { to[i] = from[list[i]]; }
+};
+
+struct SpreadSprings {
+  View<const Spring> springs;
+  View<Real> stiffness;
+  View<Vec3r> target;
+  ICLOTH_HD void operator()(Index i) const {
+    stiffness[springs[i].vertex] = springs[i].stiffness;
+    target[springs[i].vertex] = springs[i].target;
   }
 };
 
@@ -84,8 +116,8 @@ void Topology::upload(const World& world) {
   });
 }
 
-Solver::Solver(std::shared_ptr<const Scene> scene, World world)
-    : scene_(std::move(scene)), world_(std::move(world)), hands_(world_) {
+Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
+    : device_(device), scene_(std::move(scene)), world_(std::move(world)), hands_(world_) {
   mesh_.upload(world_);
   implicit_.set_up(world_);
   upload_as(state_.x1, world_.position, to_real);
@@ -95,6 +127,8 @@ Solver::Solver(std::shared_ptr<const Scene> scene, World world)
   state_.v.fill(Vec3r{});
   set_parameters(scene_->parameters);
 }
+
+void Solver::use_device() const { select_device(device_); }
 
 icloth::Build Solver::build() const {
   if (sizeof(Real) == 8) return icloth::Build::cpu64;
@@ -106,6 +140,7 @@ icloth::Build Solver::build() const {
 }
 
 void Solver::set_parameters(const Parameters& parameters) {
+  use_device();
   parameters_ = parameters;
   upload_as(mesh_.fabric, scene_->cloths,
             [&](const Cloth& cloth) { return make_fabric(cloth.material, parameters); });
@@ -122,20 +157,18 @@ void Solver::set_parameters(const Parameters& parameters) {
 void Solver::begin_substep(double start, double dt) {
   state_.x0.copy_from(state_.x1);
   std::vector<Vec3d> end;
-  std::vector<Vec3r> x0, x1, v;
+  std::vector<Vec3r> x1;
   for (const WorldObject& object : world_.objects) {
     if (object.cloth) continue;
     const Obstacle& obstacle = scene_->obstacles[static_cast<std::size_t>(object.source)];
     if (!obstacle.moves()) continue;
     obstacle.pose(start + dt, end);
-    x0.resize(end.size()), x1.resize(end.size()), v.resize(end.size());
-    state_.x0.download_range(object.first_vertex, x0);
-    for (std::size_t i = 0; i < end.size(); ++i) {
-      x1[i] = to_real(end[i]);
-      v[i] = real(1 / dt) * (x1[i] - x0[i]);
-    }
+    x1.clear();
+    for (const Vec3d& p : end) x1.push_back(to_real(p));
     state_.x1.upload_range(object.first_vertex, x1);
-    state_.v.upload_range(object.first_vertex, v);
+    for_each("step.obstacle", object.vertex_count,
+             ObstacleVelocity{state_.x0.view(), state_.x1.view(), state_.v.view(),
+                              object.first_vertex, real(1 / dt)});
   }
 }
 
@@ -189,30 +222,58 @@ std::vector<Vec3d> Solver::cloth_positions() const {
   return out;
 }
 
+std::vector<Vec3d> Solver::watched_positions() const {
+  const std::vector<Index> vertices = hands_.watched();
+  Array<Index> list;
+  list.upload(vertices);
+  Array<Vec3r> found(list.size());
+  for_each("step.watched", list.size(),
+           Gather{std::as_const(list).view(), state_.x1.view(), found.view()});
+  std::vector<Vec3d> out;
+  for (const Vec3r& p : found.download()) out.push_back(convert<double>(p));
+  return out;
+}
+
 void Solver::use_hands(std::span<const InputEvent> events) {
   state_.has_springs = false;
   if (events.empty() && hands_.empty()) return;
-  const std::vector<Vec3d> x = cloth_positions();
-  hands_.apply(events, parameters_, x);
+  const bool grabs = std::any_of(events.begin(), events.end(), [](const InputEvent& event) {
+    return event.kind == InputEvent::Kind::grab;
+  });
+  hands_.apply(events, parameters_, grabs ? cloth_positions() : std::vector<Vec3d>{});
   if (hands_.empty()) return;
-  hands_.advance(parameters_.time_step, parameters_, x);
-  std::vector<double> stiffness;
-  std::vector<Vec3d> target;
-  hands_.springs(stiffness, target);
-  upload_as(state_.spring_stiffness, stiffness, real);
-  upload_as(state_.spring_target, target, to_real);
+  hands_.advance(parameters_.time_step, parameters_, watched_positions());
+  upload_as(springs_, hands_.springs(), [](const HandSpring& s) {
+    return Spring{s.vertex, real(s.stiffness), to_real(s.target)};
+  });
+  state_.spring_stiffness.resize(mesh_.cloth_vertices);
+  state_.spring_target.resize(mesh_.cloth_vertices);
+  state_.spring_stiffness.fill(Real(0));
+  for_each(
+      "step.springs", springs_.size(),
+      SpreadSprings{springs_.view(), state_.spring_stiffness.view(), state_.spring_target.view()});
   state_.has_springs = true;
 }
 
-std::uint64_t Solver::state_hash() const { return hash_state(state_); }
+std::uint64_t Solver::state_hash() const {
+  use_device();
+  return hash_state(state_);
+}
 
 void Solver::positions(std::vector<Vec3f>& out) const {
+  use_device();
   const std::vector<Vec3r> x = state_.x1.download();
   out.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) out[i] = convert<float>(x[i]);
 }
 
+void Solver::positions_on_device(std::unique_ptr<DevicePositions>& slot) const {
+  use_device();
+  hand_out(state_.x1.view(), slot);
+}
+
 Snapshot Solver::snapshot() const {
+  use_device();
   Snapshot s;
   s.step = step_index_;
   s.time = time_;
@@ -227,6 +288,7 @@ void Solver::restore(const Snapshot& snapshot) {
     throw std::invalid_argument(
         "snapshot of another scene: " + std::to_string(snapshot.positions.size()) +
         " vertices, expected " + std::to_string(mesh_.vertices));
+  use_device();
   step_index_ = snapshot.step;
   time_ = snapshot.time;
   upload_as(state_.x1, snapshot.positions, to_real);
@@ -238,15 +300,14 @@ void Solver::restore(const Snapshot& snapshot) {
 
 std::vector<HandleState> Solver::handles() const {
   if (hands_.empty()) return {};
-  return hands_.states(cloth_positions());
+  use_device();
+  return hands_.states(watched_positions());
 }
 
-std::unique_ptr<Simulator> make_solver(std::shared_ptr<const Scene> scene, World world) {
-  return std::make_unique<Solver>(std::move(scene), std::move(world));
+std::unique_ptr<Simulator> make_solver(std::shared_ptr<const Scene> scene, World world,
+                                       int device) {
+  select_device(device);  // the arrays of the members are made there
+  return std::make_unique<Solver>(std::move(scene), std::move(world), device);
 }
-
-#if defined(__CUDACC__)
-bool device_usable(std::string* reason) { return device_usable(reason, 0); }
-#endif
 
 }  // namespace icloth::ICLOTH_BUILD

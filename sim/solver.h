@@ -16,7 +16,8 @@ namespace icloth::ICLOTH_BUILD {
 
 class Solver final : public Simulator {
  public:
-  Solver(std::shared_ptr<const Scene> scene, World world);
+  /// `device`: of the CUDA build, already selected for the calling thread.
+  Solver(std::shared_ptr<const Scene> scene, World world, int device);
 
   // sim/step.cpp
   StepReport step(std::span<const InputEvent> events) override;
@@ -30,6 +31,7 @@ class Solver final : public Simulator {
   std::int64_t step_index() const override { return step_index_; }
   std::uint64_t state_hash() const override;
   void positions(std::vector<Vec3f>& out) const override;
+  void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
   std::vector<HandleState> handles() const override;
@@ -44,6 +46,8 @@ class Solver final : public Simulator {
   void accept_substep(double dt);
   void report_offending(StepReport& report) const;
 
+  /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
+  void use_device() const;
   void use_hands(std::span<const InputEvent> events);
   /// Halvings after which no vertex is expected to travel further than allowed in a substep.
   int travel_level() const;
@@ -51,7 +55,9 @@ class Solver final : public Simulator {
   void save_start();
   void back_to_start();
   std::vector<Vec3d> cloth_positions() const;
+  std::vector<Vec3d> watched_positions() const;  ///< of the vertices that hands_ watches
 
+  int device_ = 0;
   std::shared_ptr<const Scene> scene_;
   World world_;
   Parameters parameters_;
@@ -59,6 +65,7 @@ class Solver final : public Simulator {
   State state_;
   Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
   Hands hands_;
+  Array<Spring> springs_;  ///< of the hands, use_hands
   double time_ = 0;
   std::int64_t step_index_ = 0;
 

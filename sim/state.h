@@ -8,6 +8,13 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// What a hand does to a vertex.
+struct Spring {
+  Index vertex;
+  Real stiffness;  ///< [N/m]
+  Vec3r target;    ///< [m]
+};
+
 struct State {
   Array<Vec3r> x0;         ///< start of the step [m] (vertices), begin_step
   Array<Vec3r> x1;         ///< end of the step, candidate until accepted [m] (vertices), implicit,
@@ -18,8 +25,8 @@ struct State {
   Array<Real> inverse_mass;  ///< 0 for pinned and obstacle vertices [1/kg] (vertices)
 
   /// Springs of the hands, one entry a cloth vertex; only used when has_springs.
-  Array<Real> spring_stiffness;  ///< [N/m] (cloth_vertices), begin_step
-  Array<Vec3r> spring_target;    ///< [m] (cloth_vertices), begin_step
+  Array<Real> spring_stiffness;  ///< [N/m], 0: none (cloth_vertices), use_hands
+  Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
 };
 
