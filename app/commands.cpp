@@ -102,6 +102,7 @@ void Commands::add_run() {
   verb->add_option("--stats", run.stats_file, "statistics of every step, FILE.csv or FILE.json");
   verb->add_option("--input", run.input_file, "recording whose drags are applied");
   verb->add_option("--record", run.record_file, "save the run as a recording");
+  verb->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
   verb->add_option("--on-failure", run.on_failure, "stop or continue after a refused step")
       ->check(CLI::IsMember({"stop", "continue"}));
 }

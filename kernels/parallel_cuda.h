@@ -19,6 +19,9 @@ namespace icloth::ICLOTH_BUILD {
 namespace detail {
 
 inline constexpr int kThreads = 256;  // of a block
+/// Elements of collect walk trees or test pairs: much work each, and few of them in small scenes.
+/// Small blocks spread those over the whole device.
+inline constexpr int kCollectThreads = 64;
 
 inline unsigned block_count(Index n, Index per_block) {
   return (static_cast<unsigned>(n) + static_cast<unsigned>(per_block) - 1) /
@@ -67,7 +70,7 @@ void run_cub(const char* name, const Algorithm& algorithm) {
 
 template <class F>
 __global__ void for_each_kernel(Index n, const F f) {
-  const auto i = static_cast<std::int64_t>(blockIdx.x) * kThreads + threadIdx.x;
+  const auto i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
   if (i < n) f(static_cast<Index>(i));
 }
 
@@ -257,9 +260,9 @@ struct WriteEmitted {
 
 /// `for_each` without a row in the profile.
 template <class F>
-void launch(const char* name, Index n, const F& f) {
+void launch(const char* name, Index n, const F& f, int threads = kThreads) {
   if (n <= 0) return;
-  for_each_kernel<<<block_count(n, kThreads), kThreads>>>(n, f);
+  for_each_kernel<<<block_count(n, threads), static_cast<unsigned>(threads)>>>(n, f);
   check_launch(name);
 }
 
@@ -327,10 +330,12 @@ template <class T, class F>
 Index collect(const char* name, Index n, const F& f, Array<T>& out) {
   const detail::CudaScope scope(name);
   const View<Index> offsets = detail::scratch<Index, 4>(n);
-  detail::launch(name, n, detail::CountEmitted<T, F>{f, offsets});
+  detail::launch(name, n, detail::CountEmitted<T, F>{f, offsets}, detail::kCollectThreads);
   const Index total = detail::scan_on_device(name, offsets, offsets);
   out.resize(total);
-  if (total > 0) detail::launch(name, n, detail::WriteEmitted<T, F>{f, offsets, out.view()});
+  if (total > 0)
+    detail::launch(name, n, detail::WriteEmitted<T, F>{f, offsets, out.view()},
+                   detail::kCollectThreads);
   return total;
 }
 

@@ -352,6 +352,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
         solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
                       step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
     step.report.cg_iterations += solution.iterations;
+    step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
     ++step.report.newton_iterations;
     motion.solved = true;

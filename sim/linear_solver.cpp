@@ -143,6 +143,17 @@ struct ConjugateGradients {
   }
 };
 
+/// What one iteration has to read and write when every number is moved once: the blocks and their
+/// places, the contacts, and 15 vectors and a block for each row.
+double bytes_per_iteration(const SystemView& system, Index rows) {
+  const double blocks = system.column.size(), others = system.lower_column.size();
+  return blocks * (9 * sizeof(Real) + sizeof(Index)) + 2 * sizeof(Index) * others +
+         static_cast<double>(system.contacts.size()) *
+             (sizeof(Contact) + sizeof(ContactTerm) + 2 * sizeof(Vec3r)) +
+         static_cast<double>(rows) *
+             (15 * sizeof(Vec3r) + sizeof(Mat3r) + sizeof(Real) + 3 * sizeof(Index));
+}
+
 }  // namespace
 
 void BlockMatrix::set_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
@@ -185,6 +196,7 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
                                       max_iterations, solution_.view()});
   LinearSolution solution;
   solution_.download_range(0, {&solution, 1});
+  solution.bytes = solution.iterations * bytes_per_iteration(system, n);
   return solution;
 }
 

@@ -37,6 +37,7 @@ struct SystemView {
 struct LinearSolution {
   Index iterations = 0;
   double residual = 0;  ///< ‖b − Ax‖₂ / ‖b‖₂, computed anew at the end
+  double bytes = 0;     ///< that the iterations had to read and write at least
 };
 
 class LinearSolver {

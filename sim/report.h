@@ -32,6 +32,7 @@ struct StepReport {
   std::int64_t dynamic_faces = 0, static_faces = 0;  ///< T_d of the last round, and the other faces
   std::int64_t newton_iterations = 0, cg_iterations = 0;
   double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true
+  double cg_bytes = 0;     ///< that the iterations had to move at least; no column
   double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  ///< [J]
   double max_strain = 0;  ///< largest principal stretch − 1
   double max_speed = 0;   ///< [m/s]

@@ -223,14 +223,12 @@ std::vector<Vec3d> Solver::cloth_positions() const {
 }
 
 std::vector<Vec3d> Solver::watched_positions() const {
-  const std::vector<Index> vertices = hands_.watched();
-  Array<Index> list;
-  list.upload(vertices);
-  Array<Vec3r> found(list.size());
-  for_each("step.watched", list.size(),
-           Gather{std::as_const(list).view(), state_.x1.view(), found.view()});
+  watched_.upload(hands_.watched());
+  watched_position_.resize(watched_.size());
+  for_each("step.watched", watched_.size(),
+           Gather{watched_.view(), state_.x1.view(), watched_position_.view()});
   std::vector<Vec3d> out;
-  for (const Vec3r& p : found.download()) out.push_back(convert<double>(p));
+  for (const Vec3r& p : watched_position_.download()) out.push_back(convert<double>(p));
   return out;
 }
 

@@ -65,7 +65,9 @@ class Solver final : public Simulator {
   State state_;
   Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
   Hands hands_;
-  Array<Spring> springs_;  ///< of the hands, use_hands
+  Array<Spring> springs_;                  ///< of the hands, use_hands
+  mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions
+  mutable Array<Vec3r> watched_position_;  ///< likewise
   double time_ = 0;
   std::int64_t step_index_ = 0;
 

@@ -176,6 +176,43 @@ TEST(ImpactZones, RoundsEndWithoutImpacts) {
   EXPECT_TRUE(c.ccd.impacts().empty());
 }
 
+/// Two large sheets that pass through each other everywhere: one zone, solved by all threads.
+std::vector<Vec3r> solve_large_zone(int threads, Index& largest, double& smallest_gap) {
+  set_thread_count(threads);
+  Scene scene;
+  for (int sheet = 0; sheet < 2; ++sheet)
+    scene.cloths.push_back(testing::make_sheet(testing::lying(0.5, 2400), {0, 0.004 * sheet, 0}));
+  Stage stage(scene);
+  std::vector<Vec3r> end = stage.start;
+  for (Index i = 0; i < stage.world.cloth_vertices; ++i)
+    end[at(i)].y += stage.world.object[at(i)] == 1 ? Real(-0.004) : Real(0.004);
+  stage.set_end(end);
+  BroadPhase broad_phase;
+  Ccd ccd;
+  ImpactZones zones;
+  zones.begin_step();
+  StepContext step = stage.context();
+  broad_phase.cover_candidate(step);
+  ccd.find(step, broad_phase, zones.dirty(), false);
+  zones.solve(step, ccd.impacts());
+  set_thread_count(0);
+  largest = static_cast<Index>(stage.report.largest_zone);
+  const std::vector<Vec3r> x1 = stage.state.x1.download();
+  smallest_gap = 1;
+  for (const Impact& impact : ccd.impacts().download())
+    smallest_gap = std::min(smallest_gap, gap(impact, x1) / stage.parameters.offset);
+  return x1;
+}
+
+TEST(ImpactZones, LargeZonesAreSolvedByAllThreadsWithTheSameBits) {
+  Index largest = 0;
+  double smallest_gap = 0;
+  const std::vector<Vec3r> one = solve_large_zone(1, largest, smallest_gap);
+  EXPECT_GT(largest, kLargestTeamZone);
+  EXPECT_GE(smallest_gap, 0.79);
+  EXPECT_TRUE(one == solve_large_zone(4, largest, smallest_gap));
+}
+
 std::vector<Vec3r> result_with_threads(int threads) {
   set_thread_count(threads);
   Crossing c(true);

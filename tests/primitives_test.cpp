@@ -192,6 +192,62 @@ TeamRun run_teams(Index teams, Index stride, const std::vector<Index>& host_size
   return {values.download(), sums.download(), singles.download()};
 }
 
+/// Several dependent loops and sums by the whole device.
+struct DeviceTeamWork {
+  View<Real> values, sums;
+  View<Index> singles;
+
+  ICLOTH_HD void operator()(DeviceTeam& team) const {
+    const Index n = values.size();
+    team.for_each(n, [&](Index i) { values[i] = WildNumber<Real>{}(i); });
+    const Real sum = team.reduce(
+        n, Real(0), [&](Index i) { return values[i]; }, Sum{});
+    // Many sums in a row, each of what other threads wrote after the one before.
+    Real top = 0;
+    for (int round = 1; round <= 5; ++round) {
+      top = team.reduce(
+          n, Real(-1e30), [&](Index i) { return values[n - 1 - i] = Real(round * (i % 997)); },
+          Max{});
+    }
+    team.for_each(n, [&](Index i) { values[i] = sum + values[i]; });
+    team.single([&] {
+      sums[0] = sum, sums[1] = top;
+      ++singles[0];
+    });
+  }
+};
+
+TEST_F(Primitives, ADeviceTeamSharesWhatItWrites) {
+  for (const Index n : kSizes) {
+    const auto run = [n] {
+      Array<Real> values(n), sums(2);
+      Array<Index> singles(1);
+      singles.fill(0);
+      with_device_team("device_team", n,
+                       DeviceTeamWork{values.view(), sums.view(), singles.view()});
+      return TeamRun{values.download(), sums.download(), singles.download()};
+    };
+    const TeamRun result = same_for_all_threads(run);
+    EXPECT_TRUE(result == run()) << "two runs differ";
+    EXPECT_EQ(result.singles[0], 1);
+    double sum = 0, magnitude = 0;
+    for (Index i = 0; i < n; ++i) {
+      sum += static_cast<double>(WildNumber<Real>{}(i));
+      magnitude += std::fabs(static_cast<double>(WildNumber<Real>{}(i)));
+    }
+    const auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
+    EXPECT_NEAR(static_cast<double>(result.sums[0]), sum,
+                epsilon * magnitude * (1 + std::sqrt(static_cast<double>(n))));
+    if (n > 0) {
+      EXPECT_EQ(result.sums[1], Real(5 * std::min<Index>(n - 1, 996)));
+    }
+    for (Index i = 0; i < n; ++i) {
+      const Real expected = result.sums[0] + Real(5 * ((n - 1 - i) % 997));
+      ASSERT_EQ(result.values[static_cast<std::size_t>(i)], expected) << n << ' ' << i;
+    }
+  }
+}
+
 TEST_F(Primitives, TeamsWorkOnProblemsOfAllSizes) {
   constexpr Index kStride = 1100;
   for (const Index teams : {0, 1, 33, 1025}) {

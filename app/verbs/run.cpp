@@ -1,9 +1,11 @@
 #include "app/verbs/run.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "app/headless.h"
+#include "kernels/profile.h"
 #include "sim/error.h"
 #include "sim/mesh_io.h"
 #include "sim/scene_io.h"
@@ -68,6 +70,23 @@ std::string repeat_command(const RunOptions& options, Build build, std::int64_t 
   return text + " --steps " + std::to_string(steps);
 }
 
+/// The primitives by falling time, and how fast the linear solver moves its data.
+void print_profile(const RunStatistics& statistics) {
+  std::vector<ProfileRow> rows = profile_rows();
+  std::sort(rows.begin(), rows.end(),
+            [](const ProfileRow& a, const ProfileRow& b) { return a.ms > b.ms; });
+  double solver_bytes = 0;
+  for (const StepReport& report : statistics.reports()) solver_bytes += report.cg_bytes;
+  const double steps = std::max<double>(1, static_cast<double>(statistics.steps()));
+  std::printf("%-32s %12s %12s\n", "primitive", "calls/step", "ms/step");
+  for (const ProfileRow& row : rows) {
+    std::printf("%-32s %12.1f %12.4f\n", row.name.c_str(), static_cast<double>(row.calls) / steps,
+                row.ms / steps);
+    if (row.name == "implicit.solve" && row.ms > 0)
+      std::printf("%-32s %25.1f GB/s\n", "  moves at least", solver_bytes / row.ms / 1e6);
+  }
+}
+
 }  // namespace
 
 int run_run(const RunOptions& options) {
@@ -101,12 +120,15 @@ int run_run(const RunOptions& options) {
     frames.write(simulator);
     if (report) stats.add(*report);
   };
+  profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
+  profile_enable(false);
   if (result.start_refused) return 1;
   stats.finish(result.statistics);
   if (job.record) save_recording(record, options.record_file);
   if (!common.quiet)
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+  if (options.profile) print_profile(result.statistics);
   if (!result.refused.empty())
     std::fprintf(stderr, "icloth: repeat with: %s\n",
                  repeat_command(options, job.build, result.refused.front().step + 1).c_str());

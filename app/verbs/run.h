@@ -17,6 +17,7 @@ struct RunOptions {
   std::string input_file;            ///< recording whose drags are applied; empty: the script
   std::string record_file;           ///< the run is saved here; empty: not
   std::string on_failure = "stop";   ///< stop or continue
+  bool profile = false;              ///< print the time of every primitive
 };
 
 /// Simulates, exports, prints the statistics. Returns 0, or 1 when the start state intersects, a
