@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/device_positions.h"
 #include "sim/input.h"
 #include "sim/parameters.h"
 #include "sim/report.h"
@@ -46,19 +47,23 @@ class Simulator {
 
   /// Positions of all vertices in single precision, for drawing; resized to (V).
   virtual void positions(std::vector<Vec3f>& out) const = 0;
+  /// The same on the device that computes them, for a reader there: `slot` becomes a copy of its
+  /// own (kernels/device_positions.h), empty where the solver runs on the CPU. Does not wait.
+  virtual void positions_on_device(std::unique_ptr<DevicePositions>& slot) const { slot.reset(); }
   virtual Snapshot snapshot() const = 0;
   /// Back to a state of this scene; held handles are dropped.
   virtual void restore(const Snapshot& snapshot) = 0;
   virtual std::vector<HandleState> handles() const = 0;
 };
 
-/// True when this program holds the build and, for cuda32, a usable device is there.
-/// `reason` (optional) says in one line why not.
+/// True when this program holds the build and, for cuda32, the device chosen in sim/cuda_devices.h
+/// can be used. `reason` (optional) says in one line why not.
 bool build_available(Build build, std::string* reason = nullptr);
 
 /// The scene must outlive nothing: the simulator keeps its share. Throws DeviceError when the build
 /// is not available, InputError when the scene cannot be simulated (massless vertices …).
 /// Start intersections are not checked here, see sim/intersections.h.
+/// A cuda32 simulator stays on the device that is chosen now, whichever thread calls it.
 std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Scene> scene);
 
 /// Largest number of threads the CPU builds use from now on; 0: all.

@@ -1,0 +1,32 @@
+// The primitive by which a solver hands its positions to a reader on the same device.
+#pragma once
+
+#include <memory>
+
+#include "kernels/array.h"
+#include "kernels/device_positions.h"
+#if defined(__CUDACC__)
+#include "kernels/device_positions_cuda.h"
+#endif
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Makes `slot` a copy of `x` in device memory, behind the work that the device already has; the
+/// memory of an earlier call is used again. Builds without a device leave it empty. Never throws
+/// for reasons of the device: DevicePositions::failure says them.
+inline void hand_out(View<const Vec3<Real>> x, std::unique_ptr<DevicePositions>& slot) {
+#if defined(__CUDACC__)
+  auto* positions = dynamic_cast<CudaPositions*>(slot.get());
+  if (positions == nullptr) {
+    auto fresh = std::make_unique<CudaPositions>();
+    positions = fresh.get();
+    slot = std::move(fresh);
+  }
+  positions->copy(x.data(), x.size());
+#else
+  static_cast<void>(x);
+  slot.reset();
+#endif
+}
+
+}  // namespace icloth::ICLOTH_BUILD
