@@ -1,35 +1,96 @@
 // The device that a build computes on: this machine's processor, or a CUDA device.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "kernels/platform.h"
 
 #if defined(__CUDACC__)
 #include "kernels/cuda_check.h"
+#include "kernels/device_problem.h"
 #endif
 
 namespace icloth::ICLOTH_BUILD {
 
 #if defined(__CUDACC__)
 
+namespace detail {
+
+/// Compute capabilities that this program was compiled for, ascending.
+inline std::span<const int> built_capabilities() {
+  static constexpr auto kBuilt = [] {
+    std::array tenfold{__CUDA_ARCH_LIST__};  // 750, 800 …
+    for (int& each : tenfold) each /= 10;
+    return tenfold;
+  }();
+  return kBuilt;
+}
+
+inline int driver_version() {
+  int version = 0;
+  if (cudaDriverGetVersion(&version) != cudaSuccess) static_cast<void>(cudaGetLastError());
+  return version;
+}
+inline int runtime_version() {
+  int version = CUDART_VERSION;
+  if (cudaRuntimeGetVersion(&version) != cudaSuccess) static_cast<void>(cudaGetLastError());
+  return version;
+}
+
+/// 0 where it cannot be asked.
+inline int attribute(cudaDeviceAttr which, int ordinal) {
+  int value = 0;
+  if (cudaDeviceGetAttribute(&value, which, ordinal) == cudaSuccess) return value;
+  static_cast<void>(cudaGetLastError());
+  return 0;
+}
+
+constexpr int kProbe = 20180604;
+template <class = void>
+__global__ void probe_kernel(int* out) {
+  *out = kProbe;
+}
+
+/// Runs a kernel on the calling thread's device and reads back what it wrote.
+inline cudaError_t probe() {
+  int* out = nullptr;
+  int value = 0;
+  cudaError_t error = cudaMalloc(&out, sizeof value);
+  if (error != cudaSuccess) return error;
+  probe_kernel<><<<1, 1>>>(out);  // fails where no code for this capability was built
+  error = cudaGetLastError();
+  if (error == cudaSuccess) error = cudaMemcpy(&value, out, sizeof value, cudaMemcpyDeviceToHost);
+  if (error == cudaSuccess && value != kProbe) error = cudaErrorUnknown;
+  static_cast<void>(cudaFree(out));
+  return error;
+}
+
+}  // namespace detail
+
 /// Devices that the driver shows; 0 without a driver (`reason`, if given, then says why).
 inline int device_count(std::string* reason = nullptr) {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
-  if (error != cudaSuccess) {
-    static_cast<void>(cudaGetLastError());  // clears it
-    if (reason != nullptr) *reason = cudaGetErrorString(error);
-    return 0;
+  if (error == cudaSuccess && count > 0) return count;
+  static_cast<void>(cudaGetLastError());  // clears it
+  if (reason != nullptr) {
+    *reason = no_device_problem(detail::driver_version(), detail::runtime_version(),
+                                cudaGetErrorString(error ? error : cudaErrorNoDevice));
   }
-  if (count == 0 && reason != nullptr) *reason = "the driver shows no device";
-  return count;
+  return 0;
 }
 
 inline std::string device_name(int ordinal) {
   cudaDeviceProp properties{};
   ICLOTH_CUDA_CHECK("device_name", cudaGetDeviceProperties(&properties, ordinal));
   return properties.name;
+}
+
+/// 10 · major + minor.
+inline int device_capability(int ordinal) {
+  return 10 * detail::attribute(cudaDevAttrComputeCapabilityMajor, ordinal) +
+         detail::attribute(cudaDevAttrComputeCapabilityMinor, ordinal);
 }
 
 /// Makes the device that of the calling thread. Throws std::runtime_error.
@@ -42,28 +103,36 @@ inline void device_synchronize() {
   ICLOTH_CUDA_CHECK("device_synchronize", cudaDeviceSynchronize());
 }
 
-namespace detail {
-template <class = void>
-__global__ void probe_kernel() {}
-}  // namespace detail
-
-/// Whether this program's kernels run on the device; if not, `reason` (may be null) says why.
-/// Selects the device for the calling thread.
-inline bool device_usable(std::string* reason = nullptr, int ordinal = 0) {
-  const int count = device_count(reason);
-  if (count == 0) return false;
-  if (ordinal < 0 || ordinal >= count) {
-    if (reason != nullptr) *reason = "there are " + std::to_string(count) + " CUDA devices";
-    return false;
-  }
+/// Why this program's kernels cannot run on the device, in one line; empty: they can. Leaves the
+/// device selected for the calling thread where it can be.
+inline std::string device_problem(int ordinal) {
+  std::string reason;
+  const int count = device_count(&reason);
+  if (count == 0) return reason;
+  if (ordinal < 0 || ordinal >= count) return no_such_device_problem(ordinal, count);
+  const std::string name = device_name(ordinal);
+  const auto no_code = [&] {
+    return no_code_problem(ordinal, name, device_capability(ordinal), detail::built_capabilities(),
+                           detail::runtime_version());
+  };
+  if (device_capability(ordinal) < detail::built_capabilities().front()) return no_code();
+  if (detail::attribute(cudaDevAttrComputeMode, ordinal) == cudaComputeModeProhibited)
+    return device_text(ordinal, name) + " is in compute mode 'prohibited'";
+  if (detail::attribute(cudaDevAttrCooperativeLaunch, ordinal) == 0)
+    return device_text(ordinal, name) + " cannot launch cooperative kernels, which are needed";
   cudaError_t error = cudaSetDevice(ordinal);
-  if (error == cudaSuccess) {
-    detail::probe_kernel<><<<1, 1>>>();  // fails where no code for this architecture was built
-    error = cudaGetLastError();
-  }
-  if (error == cudaSuccess) error = cudaDeviceSynchronize();
-  if (error != cudaSuccess && reason != nullptr) *reason = cudaGetErrorString(error);
-  return error == cudaSuccess;
+  if (error == cudaSuccess) error = detail::probe();
+  if (error == cudaSuccess) return "";
+  static_cast<void>(cudaGetLastError());
+  if (error == cudaErrorNoKernelImageForDevice) return no_code();
+  return device_text(ordinal, name) + ": " + cudaGetErrorString(error);
+}
+
+/// True when there is no device_problem; otherwise `reason` (may be null) is it.
+inline bool device_usable(std::string* reason = nullptr, int ordinal = 0) {
+  const std::string problem = device_problem(ordinal);
+  if (reason != nullptr) *reason = problem;
+  return problem.empty();
 }
 
 #else

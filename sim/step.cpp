@@ -88,6 +88,7 @@ void Solver::find_impacts(StepContext& step, bool incremental) {
 }
 
 StepReport Solver::step(std::span<const InputEvent> events) {
+  use_device();
   StepReport report;
   report.step = step_index_;
   report.dt = parameters_.time_step;
