@@ -145,6 +145,7 @@ void Commands::add_bench_and_replay() {
       add_verb("bench", "benchmark suites and reports", [this] { return run_bench(bench); });
   verb->add_option("SUITE", bench.suite, "quick")->capture_default_str();
   verb->add_option("--out", bench.out, "folder of results.json");
+  add_device_option(*verb, bench.device);
   verb->add_option("--threads", bench.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
   verb->add_flag("--quiet", bench.quiet, "no progress line");
@@ -154,6 +155,7 @@ void Commands::add_bench_and_replay() {
   verb->add_option("RECORDING", replay.recording, "file of --record or of a session")->required();
   verb->add_option("--threads", replay.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
+  add_device_option(*verb, replay.device);
   verb->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
   verb->add_flag("--quiet", replay.quiet, "print errors only");
 }

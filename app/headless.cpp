@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/element_names.h"
+#include "app/machine.h"
 #include "app/progress.h"
 #include "sim/intersections.h"
 
@@ -85,6 +86,8 @@ HeadlessResult run_headless(const HeadlessJob& job) {
   }
   progress.finish();
 
+  const ComputeDevice device = compute_device(job.build);
+  result.statistics.set_device(device.name, device.copy_bandwidth);
   result.penetrations = count_penetrations(*simulator);
   result.state_hash = simulator->state_hash();
   if (job.record) job.record->final_hash = result.state_hash;

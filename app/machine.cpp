@@ -10,6 +10,9 @@
 #include <chrono>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
+
+#include "sim/cuda_devices.h"
 
 namespace icloth {
 
@@ -64,6 +67,18 @@ double measure_memory_bandwidth() {
     best = std::max(best, 3.0 * sizeof(double) * count / time.count());
   }
   return best;
+}
+
+ComputeDevice compute_device(Build build) {
+  if (build != Build::cuda32 || !build_available(build)) return {};
+  ComputeDevice device;
+  device.name = cuda_device_name(cuda_device());
+  try {
+    device.copy_bandwidth = measure_copy_bandwidth(cuda_device());
+  } catch (const std::runtime_error&) {
+    // A device whose memory is full still computes.
+  }
+  return device;
 }
 
 }  // namespace icloth

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "sim/simulator.h"
+
 namespace icloth {
 
 std::string program_version();  ///< "0.1.0"
@@ -17,5 +19,14 @@ void reset_peak_memory();       ///< a new measurement starts; does nothing wher
 /// Bytes a second that all threads together read and write in a[i] = b[i] + s·c[i], best of a
 /// few runs over arrays that exceed the caches. Takes about half a second.
 double measure_memory_bandwidth();
+
+/// Device that a build computes on, where that is not the processor.
+struct ComputeDevice {
+  std::string name;           ///< as the driver names it; empty: the processor
+  double copy_bandwidth = 0;  ///< [bytes/s] read and written, as measure_copy_bandwidth; 0: unknown
+};
+
+/// Of the device that `build` uses now; measures, which takes some hundredths of a second.
+ComputeDevice compute_device(Build build);
 
 }  // namespace icloth

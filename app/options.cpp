@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "sim/cuda_devices.h"
 #include "sim/error.h"
 
 namespace icloth {
@@ -38,15 +39,34 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+/// Makes the first usable CUDA device the one that is used; otherwise `reason` says why there is
+/// none.
+bool choose_first_cuda_device(std::string& reason) {
+  const int count = cuda_device_count(&reason);
+  for (int ordinal = 0; ordinal < count; ++ordinal) {
+    std::string problem;
+    if (cuda_device_usable(ordinal, &problem)) {
+      set_cuda_device(ordinal);
+      return true;
+    }
+    reason += (ordinal > 0 ? "; " : "") + problem;
+  }
+  return false;
+}
+
 }  // namespace
+
+void add_device_option(CLI::App& verb, std::string& device) {
+  verb.add_option("--device", device, "cpu, cuda or cuda:N (default: cuda where usable)")
+      ->check(check_device);
+}
 
 void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required) {
   auto* scene = verb.add_option("SCENE", options.scene,
                                 "built-in name (scarf sphere twisting funnel dress tiered andy "
                                 "bishop), scene JSON or mesh file");
   if (scene_required) scene->required();
-  verb.add_option("--device", options.device, "cpu, cuda or cuda:N (default: cuda where usable)")
-      ->check(check_device);
+  add_device_option(verb, options.device);
   verb.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
       ->check(CLI::IsMember({"f32", "f64"}));
   verb.add_option("--threads", options.threads, "threads of the CPU solver (default: all)")
@@ -69,10 +89,13 @@ Build choose_build(const SimulationOptions& options) {
     return Build::cpu64;
   }
   if (options.device == "cpu") return Build::cpu32;
-  // The program uses one device: the others are hidden before the driver is first asked.
-  if (options.device.size() > 5) setenv("CUDA_VISIBLE_DEVICES", options.device.c_str() + 5, 1);
   std::string reason;
-  if (build_available(Build::cuda32, &reason)) return Build::cuda32;
+  if (options.device.starts_with("cuda:")) {
+    set_cuda_device(std::atoi(options.device.c_str() + 5));
+    if (build_available(Build::cuda32, &reason)) return Build::cuda32;
+  } else if (choose_first_cuda_device(reason)) {
+    return Build::cuda32;
+  }
   if (cuda) throw DeviceError("--device " + options.device + ": " + reason);
   return Build::cpu32;
 }

@@ -24,10 +24,16 @@ struct SimulationOptions {
   bool quiet = false;
 };
 
+/// --device of a verb; its form is checked while the command line is read.
+void add_device_option(CLI::App& verb, std::string& device);
+
 /// Adds the options to a verb; values are checked while the command line is read.
 void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required);
 
-/// Build that --device and --precision ask for. Throws InputError (cuda with f64), DeviceError.
+/// Build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA
+/// device that can be used, `cuda:N` that one; it becomes the one of Build::cuda32
+/// (set_cuda_device). Throws InputError (cuda with f64), DeviceError when a CUDA device was asked
+/// for and none can be used.
 Build choose_build(const SimulationOptions& options);
 
 /// Steps that --steps, --time or the scene's duration ask for, at the scene's time step.

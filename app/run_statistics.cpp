@@ -4,6 +4,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "app/machine.h"
@@ -25,6 +26,17 @@ std::string formatted(const char* format, Values... values) {
 void RunStatistics::add(const StepReport& report) {
   reports_.push_back(report);
   reports_.back().offending = {};
+}
+
+void RunStatistics::set_device(std::string name, double copy_bandwidth) {
+  device_ = std::move(name);
+  copy_bandwidth_ = copy_bandwidth;
+}
+
+std::string RunStatistics::device_json() const {
+  if (device_.empty()) return "";
+  return ", \"device\": " + nlohmann::json(device_).dump() +
+         formatted(", \"copy_bandwidth\": %.4g", copy_bandwidth_);
 }
 
 std::vector<double> RunStatistics::values(std::string_view column) const {
@@ -79,6 +91,8 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
   text += formatted("%-22s %12.2f\n", "steps/s (median)", steps_per_second());
   text += formatted("%-22s %12.0f\n", "impacts resolved", sum("impacts_first"));
   text += formatted("%-22s %12.0f   retries %.0f\n", "substeps", sum("substeps"), sum("retries"));
+  if (!device_.empty())
+    text += formatted("%-22s %12.1f GB/s %s\n", "device", copy_bandwidth_ / 1e9, device_.c_str());
   text += formatted("%-22s %12.1f MB\n", "peak memory", peak_memory_bytes() / 1e6);
   text += formatted("%-22s %12zu\n", "penetrations left", penetrations);
   text += formatted("%-22s %016" PRIx64 "\n", "final state", state_hash);
@@ -121,7 +135,7 @@ void StatisticsFile::finish(const RunStatistics& statistics) {
       text += (text.back() == '{' ? "\"" : ", \"") + std::string(column.name) + "\": " + quote +
               report_value(report, column) + quote;
     }
-    text += "}";
+    text += statistics.device_json() + "}";
   }
   write_file(path_, text + "\n]\n");
 }

@@ -14,6 +14,8 @@ namespace icloth {
 class RunStatistics {
  public:
   void add(const StepReport& report);
+  /// Device that computed the steps, and its bandwidth [bytes/s]; left out for the processor.
+  void set_device(std::string name, double copy_bandwidth);
 
   std::size_t steps() const { return reports_.size(); }
   const std::vector<StepReport>& reports() const { return reports_; }
@@ -24,6 +26,9 @@ class RunStatistics {
   /// Of the median step; 0 without steps.
   double steps_per_second() const;
 
+  /// ', "device": …, "copy_bandwidth": …' for a JSON object; empty for the processor.
+  std::string device_json() const;
+
   /// What is printed at the end of a run. `penetrations`: pairs of faces that intersect in the
   /// final state; `state_hash`: of that state.
   std::string table(std::size_t penetrations, std::uint64_t state_hash) const;
@@ -32,6 +37,8 @@ class RunStatistics {
   std::vector<double> values(std::string_view column) const;
 
   std::vector<StepReport> reports_;  // without the offending pairs
+  std::string device_;
+  double copy_bandwidth_ = 0;
 };
 
 /// File of --stats: CSV is written as the run goes, JSON at the end.

@@ -10,6 +10,7 @@ namespace icloth::cuda32 {
 CudaSystem query_system();
 int count_devices(std::string* reason);
 bool is_device_usable(int ordinal, std::string* reason);
+std::string name_of_device(int ordinal);
 double copy_bandwidth(int ordinal);
 }  // namespace icloth::cuda32
 #endif
@@ -35,6 +36,7 @@ int cuda_device_count(std::string* reason) { return cuda32::count_devices(reason
 bool cuda_device_usable(int ordinal, std::string* reason) {
   return cuda32::is_device_usable(ordinal, reason);
 }
+std::string cuda_device_name(int ordinal) { return cuda32::name_of_device(ordinal); }
 double measure_copy_bandwidth(int ordinal) { return cuda32::copy_bandwidth(ordinal); }
 
 #else
@@ -49,6 +51,7 @@ int cuda_device_count(std::string* reason) {
   return 0;
 }
 bool cuda_device_usable(int, std::string* reason) { return cuda_device_count(reason) > 0; }
+std::string cuda_device_name(int) { throw DeviceError(kWithoutCuda); }
 double measure_copy_bandwidth(int) { throw DeviceError(kWithoutCuda); }
 
 #endif

@@ -35,6 +35,9 @@ int cuda_device_count(std::string* reason = nullptr);
 /// Whether the solver can run on the device; if not, `reason` (may be null) says why in one line.
 bool cuda_device_usable(int ordinal, std::string* reason = nullptr);
 
+/// As the driver names it, of one of the devices that it shows.
+std::string cuda_device_name(int ordinal);
+
 /// Bytes a second, read and written together, of copies within the memory of a usable device: best
 /// of a few over buffers that exceed its caches. Takes some hundredths of a second.
 double measure_copy_bandwidth(int ordinal);

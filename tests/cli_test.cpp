@@ -162,9 +162,18 @@ TEST_F(Cli, MissingDisplayAndDevice) {
     EXPECT_EQ(count_lines(window.err), 1u) << window.err;
   }
   write("drop.json", kDrop);
-  const Outcome cuda = icloth("run drop.json --device cuda", "CUDA_VISIBLE_DEVICES=");
-  EXPECT_EQ(cuda.code, 3) << cuda.err;
-  EXPECT_EQ(count_lines(cuda.err), 1u) << cuda.err;
+  for (const char* verb : {"run drop.json", "bench"}) {
+    for (const char* device : {"cuda", "cuda:0", "cuda:99"}) {
+      const Outcome cuda =
+          icloth(std::string(verb) + " --device " + device, "CUDA_VISIBLE_DEVICES=");
+      EXPECT_EQ(cuda.code, 3) << cuda.err;
+      EXPECT_EQ(count_lines(cuda.err), 1u) << cuda.err;
+      EXPECT_TRUE(contains(cuda.err, std::string("--device ") + device + ": no device: "))
+          << cuda.err;
+      EXPECT_EQ(cuda.out, "");
+    }
+  }
+  EXPECT_EQ(icloth("run drop.json --steps 1", "CUDA_VISIBLE_DEVICES=").code, 0);
 }
 
 TEST_F(Cli, CheckFindsWhatCrosses) {

@@ -7,6 +7,9 @@
 
 #include "app/headless.h"
 #include "app/machine.h"
+#include "app/options.h"
+#include "kernels/device_problem.h"
+#include "sim/cuda_devices.h"
 #include "sim/error.h"
 #include "sim/file_io.h"
 #include "sim/scene_io.h"
@@ -29,6 +32,32 @@ const std::vector<BenchCase>& quick_suite() {
       {"sphere, 200K triangles", "sphere", {"triangles=200000"}, 40},
   };
   return cases;
+}
+
+/// The CPU and the usable CUDA device, or the one that was asked for.
+std::vector<Build> chosen_builds(const std::string& device) {
+  SimulationOptions where;
+  where.device = device;
+  const Build build = choose_build(where);
+  if (device.empty() && build != Build::cpu32) return {Build::cpu32, build};
+  return {build};
+}
+
+Json describe_cuda() {
+  Json json;
+  const CudaSystem system = cuda_system();
+  for (const CudaDevice& device : system.devices) {
+    if (device.ordinal != cuda_device()) continue;
+    json["device"] = device.name;
+    json["compute_capability"] = capability_text(device.capability);
+    json["memory_bytes"] = device.memory;
+    json["multiprocessors"] = device.multiprocessors;
+    json["l2_cache_bytes"] = device.l2_cache;
+    json["driver_version"] = cuda_version_text(system.driver);
+    json["runtime_version"] = cuda_version_text(system.runtime);
+    json["copy_bandwidth"] = compute_device(Build::cuda32).copy_bandwidth;
+  }
+  return json;
 }
 
 Json describe_machine(int threads) {
@@ -91,20 +120,27 @@ int run_bench(const BenchOptions& options) {
   if (!options.out.empty()) std::filesystem::create_directories(options.out, error);
   if (error) throw InputError("--out " + options.out + ": " + error.message());
   set_thread_count(options.threads);
+  const std::vector<Build> builds = chosen_builds(options.device);
 
   Json results;
   results["suite"] = options.suite;
   results["machine"] = describe_machine(options.threads);
+  if (builds.back() == Build::cuda32) results["machine"]["cuda"] = describe_cuda();
   std::printf("%s, %d threads, %.1f GB/s, %s, commit %s\n", processor_name().c_str(),
               results["machine"]["threads"].get<int>(),
               results["machine"]["memory_bandwidth"].get<double>() / 1e9, compiler_name().c_str(),
               program_commit().c_str());
+  if (results["machine"].contains("cuda")) {
+    const Json& cuda = results["machine"]["cuda"];
+    std::printf("cuda:%d, %s, %.1f GB/s\n", cuda_device(),
+                cuda["device"].get<std::string>().c_str(),
+                cuda["copy_bandwidth"].get<double>() / 1e9);
+  }
   std::printf("%-24s %-7s %9s %6s %9s %10s %12s %9s\n", "test", "build", "triangles", "steps",
               "steps/s", "ms median", "penetrations", "peak MB");
   bool clean = true;
   for (const BenchCase& test : quick_suite()) {
-    for (const Build build : {Build::cpu32, Build::cuda32}) {
-      if (!build_available(build)) continue;
+    for (const Build build : builds) {
       reset_peak_memory();
       HeadlessJob job;
       job.scene = load_scene(test.scene, test.overrides);

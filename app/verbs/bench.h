@@ -8,6 +8,7 @@ namespace icloth {
 struct BenchOptions {
   std::string suite = "quick";
   std::string out;     ///< folder of results.json; empty: none is written
+  std::string device;  ///< cpu, cuda or cuda:N; empty: cpu, then cuda where it is usable
   int threads = 0;     ///< of the CPU builds; 0: all
   bool quiet = false;  ///< no progress line
 };

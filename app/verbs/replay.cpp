@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/headless.h"
+#include "app/options.h"
 #include "sim/scene_io.h"
 
 namespace icloth {
@@ -14,6 +15,12 @@ int run_replay(const ReplayOptions& options) {
   job.scene = load_scene(recording.scene, recording.overrides);
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
     if (build_name(build) == recording.build) job.build = build;
+  if (!options.device.empty() || job.build == Build::cuda32) {
+    SimulationOptions where;
+    where.device = options.device.empty() ? "cuda" : options.device;
+    if (job.build == Build::cpu64) where.precision = "f64";
+    job.build = choose_build(where);
+  }
   job.steps = static_cast<long>(recording.steps.size());
   job.input = &recording;
   job.stop_on_failure = false;  // the recorded hands saw the same refusals

@@ -95,6 +95,8 @@ CudaSystem query_system() {
 
 int count_devices(std::string* reason) { return device_count(reason); }
 
+std::string name_of_device(int ordinal) { return device_name(ordinal); }
+
 bool is_device_usable(int ordinal, std::string* reason) { return device_usable(reason, ordinal); }
 
 double copy_bandwidth(int ordinal) {
