@@ -11,7 +11,9 @@
 #include "app/machine.h"
 #include "app/options.h"
 #include "app/verbs/bench.h"
+#include "app/verbs/ccd.h"
 #include "app/verbs/check.h"
+#include "app/verbs/detect.h"
 #include "app/verbs/info.h"
 #include "app/verbs/render.h"
 #include "app/verbs/replay.h"
@@ -19,16 +21,12 @@
 #include "app/verbs/view.h"
 #include "sim/assets.h"
 #include "sim/error.h"
-#if __has_include("app/verbs/ccd.h")
-#define ICLOTH_HAS_CCD_VERB
-#include "app/verbs/ccd.h"
-#endif
 
 namespace icloth {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"view",   "run", "render", "bench",
-                                       "replay", "ccd", "check",  "info"};
+constexpr std::string_view kVerbs[] = {"view", "run",    "render", "bench", "replay",
+                                       "ccd",  "detect", "check",  "info"};
 
 int print_keys() {
   std::fputs(bindings_markdown().c_str(), stdout);
@@ -47,6 +45,7 @@ struct Commands {
   BenchOptions bench;
   ReplayOptions replay;
   CheckOptions check;
+  DetectOptions detect;
   std::string ccd_queries, ccd_predictions;
   bool list_keys = false;
 
@@ -87,6 +86,10 @@ void Commands::add_view() {
   add_simulation_options(*verb, view_simulation, false);
   verb->add_option("--record", view.record_file, "save the session as a recording at the end");
   verb->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
+  verb->add_option("--vertices", view.vertices,
+                   "how they reach OpenGL: auto (on the GPU where that works) or host")
+      ->check(CLI::IsMember({"auto", "host"}))
+      ->capture_default_str();
   verb->add_flag("!--paused", view.play, "start paused");
   verb->add_flag("--script", view.play_script, "apply the scene's scripted grabs as well");
 }
@@ -135,6 +138,10 @@ void Commands::add_render() {
   verb->add_option("--view", render.view, "what is shown")->capture_default_str();
   verb->add_option("--quality", render.quality, "draft, interactive or still")
       ->capture_default_str();
+  verb->add_option("--vertices", render.vertices,
+                   "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
+      ->check(CLI::IsMember({"auto", "interop", "host"}))
+      ->capture_default_str();
   verb->add_option("--fps", render.frame_rate, "frames a second of a video")
       ->check(CLI::Range(1.0, 1000.0));
   verb->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
@@ -161,14 +168,18 @@ void Commands::add_bench_and_replay() {
 }
 
 void Commands::add_tests() {
-#if defined(ICLOTH_HAS_CCD_VERB)
   CLI::App* ccd = add_verb("ccd", "elementary CCD over a file of queries",
                            [this] { return run_ccd(ccd_queries, ccd_predictions); });
   ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
   ccd->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
-#endif
-  CLI::App* verb = add_verb("check", "exact self- and inter-mesh intersection test",
-                            [this] { return run_check(check); });
+  CLI::App* verb = add_verb("detect", "all collisions between two frames of a mesh",
+                            [this] { return run_detect(detect); });
+  verb->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
+  verb->add_option("T1", detect.end, "the same mesh at the end")->required();
+  verb->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");
+  verb->add_option("--threads", detect.threads, "threads")->check(CLI::Range(1, 4096));
+  verb = add_verb("check", "exact self- and inter-mesh intersection test",
+                  [this] { return run_check(check); });
   verb->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
   verb->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
   CLI::App* info = add_verb("info", "version, machine, builds, renderer",
