@@ -60,6 +60,7 @@ Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
   recording_.overrides = options_.overrides;
   start_.snapshot = simulator_->snapshot();
   start_.parameters = simulator_->parameters();
+  simulator_->positions(told_positions_);
   if (refused()) fail(options_.refusal);
   publish(true);
   published_.take();
@@ -119,12 +120,28 @@ Recording Session::recording() const {
 
 // ---- solver thread -----------------------------------------------------------------------------
 
+/// Whatever the simulator throws ends its work, not the program: a lost device above all.
+template <class Work>
+bool Session::guarded(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& error) {
+    // The first reason counts: what fails after it is only a consequence.
+    if (!refused()) options_.refusal = std::string("The solver stopped: ") + error.what();
+    playing_ = single_ = false;
+    step_begin_ = 0;
+    fail(options_.refusal);
+    return false;
+  }
+}
+
 void Session::run() {
   std::vector<Mail> mail;
   while (!stopping_) {
     wait_for_mail(mail);
     for (const Mail& item : mail) {
-      std::visit([this](const auto& content) { handle(content); }, item);
+      guarded([&] { std::visit([this](const auto& content) { handle(content); }, item); });
     }
     const bool idle = !playing_ && !single_;
     if (!mail.empty() && idle) publish(true);
@@ -252,18 +269,14 @@ Recording::Step Session::next_step() {
 void Session::advance() {
   single_ = false;
   const Clock::time_point begin = Clock::now();
-  history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_, held_});
-  Recording::Step step = next_step();
-  step_begin_ = begin.time_since_epoch().count();
-  try {
+  Recording::Step step;
+  const bool done = guarded([&] {
+    history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_, held_});
+    step = next_step();
+    step_begin_ = begin.time_since_epoch().count();
     report_ = simulator_->step(step.events);
-  } catch (const std::exception& error) {
-    options_.refusal = std::string("The solver stopped: ") + error.what();
-    playing_ = false;
-    step_begin_ = 0;
-    fail(options_.refusal);
-    return publish(true);
-  }
+  });
+  if (!done) return publish(true);
   step_begin_ = 0;
   for (const InputEvent& event : step.events) track(held_, event);
   recorded_parameters_ = simulator_->parameters();
@@ -327,6 +340,20 @@ void Session::note(const std::string& text) {
   ++notes_;
 }
 
+/// A solver that has lost its device leaves the last positions that it told.
+void Session::read_positions(PublishedState& state) {
+  const bool told = guarded([&] {
+    simulator_->positions_on_device(state.on_device);  // first: the other one waits for the device
+    simulator_->positions(told_positions_);
+    state.handles = simulator_->handles();
+  });
+  if (!told) {
+    state.on_device.reset();
+    state.handles.clear();
+  }
+  state.positions = told_positions_;
+}
+
 /// A fast solver does not publish every step: nobody sees more than the screen shows.
 void Session::publish(bool always) {
   const Clock::time_point now = Clock::now();
@@ -335,8 +362,7 @@ void Session::publish(bool always) {
   PublishedState& state = published_.back();
   state.step = simulator_->step_index();
   state.time = simulator_->time();
-  simulator_->positions(state.positions);
-  state.handles = simulator_->handles();
+  read_positions(state);
   state.held.clear();
   std::map<int, InputEvent> held = held_;
   for (const InputEvent& event : pending_) track(held, event);

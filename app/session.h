@@ -36,8 +36,13 @@ struct SessionOptions {
 /// What the interface thread sees.
 struct PublishedState {
   std::int64_t step = 0;
-  double time = 0;                   ///< [s]
-  std::vector<Vec3f> positions;      ///< all vertices [m]
+  double time = 0;  ///< [s]
+  /// All vertices [m]. They go along also where the picture is made from `on_device`: picking,
+  /// handles and the camera work on the host.
+  std::vector<Vec3f> positions;
+  /// The same on the solver's device; null: it has none. Each slot of the triple buffer has its
+  /// own, so the one that is drawn from is not written.
+  std::unique_ptr<DevicePositions> on_device;
   std::vector<HandleState> handles;  ///< as the solver holds them
   std::vector<InputEvent> held;      ///< the same as grabs with their newest targets
   std::uint64_t rewinds = 0;         ///< grows when the state jumps back: handles may be gone
@@ -125,6 +130,9 @@ class Session {
   void fail(const std::string& sentence);
   void note(const std::string& text);
   void publish(bool always);
+  void read_positions(PublishedState& state);
+  template <class Work>
+  bool guarded(const Work& work);
   bool refused() const { return !options_.refusal.empty(); }
 
   std::unique_ptr<Simulator> simulator_;
@@ -148,6 +156,7 @@ class Session {
   HistoryEntry start_;
   History history_;
   StepReport report_;
+  std::vector<Vec3f> told_positions_;  ///< by the simulator, the newest [m] (V)
   bool failed_ = false;
   std::string failure_;
   std::uint64_t rewinds_ = 0, notes_ = 0;

@@ -58,7 +58,7 @@ Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
       start_intersections_(find_start_intersections(*scene_, options.build != Build::cpu64)),
       window_("icloth - " + scene_->name, options.width, options.height),
       ui_(window_),
-      renderer_(world_),
+      renderer_(world_, {.on_device = options.vertices != "host"}),
       software_(is_software(gl_renderer())),
       threads_(solver_threads(options.threads, software_)),
       edits_(scene_->parameters) {
@@ -181,6 +181,7 @@ void Viewer::draw_scene() {
   if (hover_ && !drag_.grabbing()) hover.push_back(convert<float>(*hover_));
   Frame scene_frame;
   scene_frame.positions = session_->state().positions;
+  scene_frame.on_device = session_->state().on_device.get();
   scene_frame.handles = handles;
   scene_frame.marked_faces = marked_faces_;
   scene_frame.marked_vertices = pins;

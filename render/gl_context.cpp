@@ -4,9 +4,11 @@
 
 #include <cstdio>
 
+#include "render/cuda_vertices.h"
 #include "render/gl_context_egl.h"
-#include "render/shared_vertices.h"
+#include "sim/cuda_devices.h"
 #include "sim/error.h"
+#include "sim/simulator.h"
 
 namespace icloth {
 
@@ -29,6 +31,8 @@ void load_gl(GlLoader loader) {
   }
 }
 
+std::string gl_device_name() { return gl_text(GL_RENDERER); }
+
 std::string gl_renderer() { return gl_text(GL_RENDERER) + ", OpenGL " + gl_text(GL_VERSION); }
 
 bool gl_is_software() {
@@ -50,12 +54,16 @@ void check_gl(const char* where) {
 
 std::string gl_info() {
   try {
-    const std::unique_ptr<GlContext> context = make_egl_context();
+    const bool cuda = build_available(Build::cuda32);
+    const int device = cuda_device();
+    const std::unique_ptr<GlContext> context = make_egl_context(cuda ? device : kNone);
     std::string reason;
-    const bool interop = SharedVertices::interop_available(&reason);
+    const std::string vertices =
+        interop_works(device, reason)
+            ? "CUDA-OpenGL interop (probe passed on CUDA device " + std::to_string(device) + ")"
+            : "host copy (" + reason + ")";
     return "renderer      " + gl_renderer() + "\n              " + context->origin() +
-           "\nvertices      " + (interop ? "CUDA-OpenGL interop" : "host copy") + " (" + reason +
-           ")\n";
+           "\nvertices      " + vertices + "\n";
   } catch (const DeviceError& error) {
     return std::string("renderer      none: ") + error.what() + "\n";
   }

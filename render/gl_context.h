@@ -28,6 +28,9 @@ void load_gl(GlLoader loader);
 /// "RENDERER, OpenGL VERSION" of the current context.
 std::string gl_renderer();
 
+/// What the current context draws on, as the driver calls it: "NVIDIA H200/PCIe/SSE2".
+std::string gl_device_name();
+
 /// True when the current context draws on the processor (llvmpipe and the like).
 bool gl_is_software();
 

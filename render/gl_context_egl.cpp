@@ -3,8 +3,11 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include <vector>
+#include <algorithm>
+#include <numeric>
+#include <string_view>
 
+#include "render/cuda_vertices.h"
 #include "sim/error.h"
 
 namespace icloth {
@@ -95,17 +98,52 @@ std::vector<EGLDeviceEXT> devices() {
   return list;
 }
 
+/// The number that EGL says CUDA gives the device; kNone when it says none.
+int cuda_number(EGLDeviceEXT device) {
+  const auto describe = function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  const auto query = function<PFNEGLQUERYDEVICEATTRIBEXTPROC>("eglQueryDeviceAttribEXT");
+  if (!describe || !query) return kNone;
+  const char* extensions = describe(device, EGL_EXTENSIONS);
+  if (!extensions ||
+      std::string_view(extensions).find("EGL_NV_device_cuda") == std::string_view::npos)
+    return kNone;
+  EGLAttrib number = kNone;
+  return query(device, EGL_CUDA_DEVICE_NV, &number) ? static_cast<int>(number) : kNone;
+}
+
 }  // namespace
 
-std::unique_ptr<GlContext> make_egl_context() {
+std::vector<std::size_t> egl_order(std::span<const int> cuda, int wanted) {
+  std::vector<std::size_t> order(cuda.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto rank = [&](std::size_t k) { return cuda[k] < 0 ? 2 : cuda[k] == wanted ? 0 : 1; };
+  if (wanted >= 0) {
+    std::ranges::stable_sort(order,
+                             [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  }
+  return order;
+}
+
+std::unique_ptr<GlContext> make_egl_context(int cuda_device) {
   Tried tried;
   const auto display = function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   if (!display) throw DeviceError("EGL: no platform displays, expected EGL 1.5 or newer");
-  int number = 0;
-  for (EGLDeviceEXT device : devices()) {
-    const std::string name = "EGL device " + std::to_string(number++);
-    if (auto made = try_display(display(EGL_PLATFORM_DEVICE_EXT, device, nullptr), name, tried))
-      return made;
+  const std::vector<EGLDeviceEXT> list = devices();
+  std::vector<int> cuda;
+  for (EGLDeviceEXT device : list) cuda.push_back(cuda_device < 0 ? kNone : cuda_number(device));
+  std::unique_ptr<GlContext> spare;  // works, but draws elsewhere
+  for (const std::size_t k : egl_order(cuda, cuda_device)) {
+    const EGLDisplay platform = display(EGL_PLATFORM_DEVICE_EXT, list[k], nullptr);
+    auto made = try_display(platform, "EGL device " + std::to_string(k), tried);
+    if (!made) continue;
+    std::string elsewhere;
+    if (cuda_device < 0 || gl_runs_on_cuda(cuda_device, elsewhere)) return made;
+    if (!spare) spare = std::move(made);
+  }
+  if (spare) {
+    spare->make_current();
+    load_gl(&eglGetProcAddress);  // those of the last try may be another driver's
+    return spare;
   }
   EGLDisplay surfaceless = display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (auto made = try_display(surfaceless, "EGL surfaceless", tried)) return made;

@@ -39,13 +39,13 @@ GLuint constant_buffer(const std::vector<T>& data) {
 
 }  // namespace
 
-MeshPass::MeshPass(const World& world, unsigned positions_buffer, unsigned normals_buffer)
+MeshPass::MeshPass(const World& world, const VertexBuffers& vertices)
     : world_(world),
       mesh_("mesh.vert.glsl", "mesh.frag.glsl"),
       draft_("mesh.vert.glsl", "mesh.frag.glsl", true),
       depth_("shadow.vert.glsl", ""),
-      positions_(positions_buffer),
-      normals_(normals_buffer) {
+      positions_(vertices.positions()),
+      normals_(vertices.normals()) {
   upload_constants();
   glCreateVertexArrays(1, &empty_array_);
   glCreateVertexArrays(1, &vertex_array_);

@@ -3,6 +3,7 @@
 
 #include "render/matrix.h"
 #include "render/shader_program.h"
+#include "render/vertex_buffers.h"
 #include "sim/world.h"
 
 namespace icloth {
@@ -10,7 +11,7 @@ namespace icloth {
 /// Constant buffers of a world's faces and the programs that draw them. Needs a current context.
 class MeshPass {
  public:
-  explicit MeshPass(const World& world, unsigned positions_buffer, unsigned normals_buffer);
+  MeshPass(const World& world, const VertexBuffers& vertices);
   ~MeshPass();
   MeshPass(const MeshPass&) = delete;
   MeshPass& operator=(const MeshPass&) = delete;

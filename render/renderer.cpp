@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "render/gl_context.h"
 #include "render/gl_targets.h"
@@ -13,7 +14,6 @@
 #include "render/mesh_pass.h"
 #include "render/overlay.h"
 #include "render/shader_program.h"
-#include "render/shared_vertices.h"
 #include "sim/error.h"
 #include "sim/parameters.h"
 
@@ -74,7 +74,7 @@ ViewMode parse_view_mode(std::string_view name) {
 }
 
 struct Renderer::Parts {
-  explicit Parts(const World& the_world);
+  Parts(const World& the_world, VertexOptions options);
   ~Parts();
 
   void upload(const Frame& frame, const Camera& camera, int width, int height);
@@ -104,10 +104,10 @@ struct Renderer::Parts {
   GLuint studio = 0, overlay_buffer = 0, overlay_array = 0, empty_array = 0;
 };
 
-Renderer::Parts::Parts(const World& the_world)
+Renderer::Parts::Parts(const World& the_world, VertexOptions options)
     : world(the_world),
-      vertices(the_world),
-      meshes(the_world, vertices.positions_buffer(), vertices.normals_buffer()),
+      vertices(the_world, std::move(options)),
+      meshes(the_world, vertices.buffers()),
       backdrop("screen.vert.glsl", "backdrop.frag.glsl"),
       ground_disc("ground.vert.glsl", "ground.frag.glsl"),
       draft_ground_disc("ground.vert.glsl", "ground.frag.glsl", true),
@@ -136,7 +136,7 @@ Renderer::Parts::~Parts() {
 }
 
 void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width, int height) {
-  vertices.upload(frame.positions);
+  vertices.update(frame.positions, frame.on_device);
   bounds = bounds_of(frame.positions, static_cast<std::size_t>(world.cloth_vertices));
   ground = chosen_ground.value_or(std::min(start_ground, bounds.lowest));
   const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
@@ -258,7 +258,8 @@ void Renderer::Parts::cover(const ShaderProgram& program) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-Renderer::Renderer(const World& world) : parts_(std::make_unique<Parts>(world)) {}
+Renderer::Renderer(const World& world, VertexOptions options)
+    : parts_(std::make_unique<Parts>(world, std::move(options))) {}
 Renderer::~Renderer() = default;
 
 void Renderer::set_quality(Quality quality) {
@@ -271,6 +272,10 @@ Quality Renderer::quality() const { return parts_->quality; }
 void Renderer::set_ground(double height) { parts_->chosen_ground = height; }
 
 std::string Renderer::vertex_way() const { return parts_->vertices.way_text(); }
+
+bool Renderer::shares_vertices() const {
+  return parts_->vertices.way() == SharedVertices::Way::interop;
+}
 
 void Renderer::draw(const Frame& frame, const Camera& camera, int width, int height,
                     unsigned target_framebuffer) {

@@ -9,6 +9,7 @@
 
 #include "render/camera.h"
 #include "render/image.h"
+#include "render/shared_vertices.h"
 #include "sim/input.h"
 #include "sim/world.h"
 
@@ -32,11 +33,12 @@ enum class Quality {
 
 /// What is drawn. The spans must stay valid during draw() only.
 struct Frame {
-  std::span<const Vec3f> positions;          ///< all vertices of the world [m]
-  std::span<const HandleState> handles{};    ///< line from hit to target, coloured by saturation
-  std::span<const Index> marked_faces{};     ///< global faces shown in red, also when hidden
-  std::span<const Index> marked_vertices{};  ///< global vertices shown as dots (pins)
-  std::span<const Vec3f> hover{};            ///< points under the pointer, drawn as rings [m]
+  std::span<const Vec3f> positions;            ///< all vertices of the world [m]
+  const DevicePositions* on_device = nullptr;  ///< the same on the solver's device; null: none
+  std::span<const HandleState> handles{};      ///< line from hit to target, coloured by saturation
+  std::span<const Index> marked_faces{};       ///< global faces shown in red, also when hidden
+  std::span<const Index> marked_vertices{};    ///< global vertices shown as dots (pins)
+  std::span<const Vec3f> hover{};              ///< points under the pointer, drawn as rings [m]
   ViewMode view = ViewMode::shaded;
   double strain_range = 0.1;  ///< strain that gets the last colour of the scale
 };
@@ -45,7 +47,7 @@ class Renderer {
  public:
   /// Needs a current context with its functions loaded, here and in every call, also to destroy.
   /// `world` must outlive the renderer. Throws DeviceError when a shader does not compile.
-  explicit Renderer(const World& world);
+  explicit Renderer(const World& world, VertexOptions options = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -65,8 +67,11 @@ class Renderer {
   /// The same into a picture.
   Image picture(const Frame& frame, const Camera& camera, int width, int height);
 
-  /// How vertices reach the GPU, e.g. "host copy (built without CUDA)".
+  /// How the vertices of the last picture reached the GPU and why, e.g. "host copy (built without
+  /// CUDA)".
   std::string vertex_way() const;
+  /// True when that was CUDA-OpenGL interop.
+  bool shares_vertices() const;
 
  private:
   struct Parts;

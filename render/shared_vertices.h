@@ -3,50 +3,48 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
+#include "render/cuda_vertices.h"
 #include "sim/world.h"
 
 namespace icloth {
 
-/// Buffers of positions and normals for drawing. With interop the CUDA solver packs both into the
-/// mapped buffers and nothing crosses the bus; otherwise they are copied from the host. Which way
-/// runs is found out once by a probe, never guessed. Needs a current context, also to destroy.
+struct VertexOptions {
+  bool on_device = true;  ///< false: always through the host
+  MakeVertexWriter make_writer = make_cuda_writer;
+};
+
+/// Buffers of positions and normals for drawing. Positions that the solver hands out on a CUDA
+/// device are packed into the buffers there (CUDA-OpenGL interop) and cross no bus; otherwise the
+/// host packs and copies them. Both give the same bits. Which way runs is found out by a probe
+/// with the first such frame, and when interop fails, then or later, the host copies from then
+/// on. Needs a current context, also to destroy.
 class SharedVertices {
  public:
   enum class Way { host_copy, interop };
 
-  explicit SharedVertices(const World& world);
-  ~SharedVertices();
-  SharedVertices(const SharedVertices&) = delete;
-  SharedVertices& operator=(const SharedVertices&) = delete;
+  explicit SharedVertices(const World& world, VertexOptions options = {});
 
-  /// True when CUDA can write into buffers of the current context; `reason` says in one line why
-  /// not.
-  static bool interop_available(std::string* reason = nullptr);
+  /// Fills the buffers with the positions of all vertices [m] (V) and the normals computed from
+  /// them. `on_device`: the same positions on the solver's device; null: the solver has none.
+  void update(std::span<const Vec3f> positions, const DevicePositions* on_device);
 
-  /// Copies positions of all vertices [m] (V) and the normals computed from them.
-  void upload(std::span<const Vec3f> positions);
-
-  Way way() const { return way_; }
-  /// E.g. "host copy (built without CUDA)".
+  /// Of the last update.
+  Way way() const { return writer_ ? Way::interop : Way::host_copy; }
+  /// With the reason: "host copy (the solver runs on the CPU)".
   std::string way_text() const;
 
-  /// Shader storage buffers: floats, three a vertex, tightly packed.
-  unsigned positions_buffer() const { return buffers_[0]; }
-  unsigned normals_buffer() const { return buffers_[1]; }
+  const VertexBuffers& buffers() const { return buffers_; }
 
  private:
-  const World* world_;
-  Way way_ = Way::host_copy;
-  std::string reason_;
-  unsigned buffers_[2] = {0, 0};
-  std::vector<Vec3f> normals_;
-};
+  bool write_on_device(const DevicePositions* positions);
+  void give_up(const std::string& reason);
 
-/// Unit normals of the vertices: the sum of the faces' normals weighted by area. A vertex whose
-/// faces cancel out gets (0, 1, 0).
-void vertex_normals(std::span<const Vec3f> positions, std::span<const Triangle> faces,
-                    std::vector<Vec3f>& normals);
+  VertexOptions options_;
+  VertexFaces faces_;
+  VertexBuffers buffers_;
+  std::unique_ptr<VertexWriter> writer_;  ///< after the buffers: it lets go of them first
+  std::string reason_;
+};
 
 }  // namespace icloth

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "sim/simulator.h"
+#include "tests/fake_device.h"
 
 namespace icloth::testing {
 
@@ -20,6 +21,9 @@ struct FakeOptions {
   std::int64_t refuse = -1;   ///< calls of step() from this one on are refused …
   double refuse_above = 0;    ///< … while the time step is above this [s]
   std::int64_t explode = -1;  ///< this call of step() throws
+  std::int64_t lose = -1;     ///< from this call of step() on the device is lost: it and all
+                              ///< questions about the state throw
+  bool on_device = false;     ///< hand positions out as a solver on a device does
 };
 
 class FakeSimulator : public Simulator {
@@ -46,6 +50,8 @@ class FakeSimulator : public Simulator {
       std::this_thread::sleep_for(std::chrono::milliseconds(options_.step_ms));
     }
     const std::int64_t call = calls_++;
+    if (options_.lose >= 0 && call >= options_.lose) lost_ = true;
+    check_device();
     if (call == options_.explode) throw std::runtime_error("out of order");
     for (const InputEvent& event : events) apply(event);
     StepReport report;
@@ -79,12 +85,23 @@ class FakeSimulator : public Simulator {
     return hash;
   }
 
+  void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override {
+    std::vector<Vec3f> now;
+    positions(now);
+    if (options_.on_device) return fake_hand_out(now, slot);
+    slot.reset();
+  }
   void positions(std::vector<Vec3f>& out) const override {
+    check_device();
     out.resize(positions_.size());
     std::ranges::transform(positions_, out.begin(), [](Vec3d p) { return convert<float>(p); });
   }
-  Snapshot snapshot() const override { return {step_, time_, positions_, velocities_}; }
+  Snapshot snapshot() const override {
+    check_device();
+    return {step_, time_, positions_, velocities_};
+  }
   void restore(const Snapshot& snapshot) override {
+    check_device();
     step_ = snapshot.step;
     time_ = snapshot.time;
     positions_ = snapshot.positions;
@@ -98,6 +115,10 @@ class FakeSimulator : public Simulator {
   }
 
  private:
+  void check_device() const {
+    if (lost_) throw std::runtime_error("device lost");
+  }
+
   void apply(const InputEvent& event) {
     const auto held = held_.find(event.handle);
     if (event.kind == InputEvent::Kind::grab) {
@@ -130,6 +151,7 @@ class FakeSimulator : public Simulator {
   std::map<int, InputEvent> held_;
   std::int64_t step_ = 0, calls_ = 0;
   double time_ = 0;
+  bool lost_ = false;
 };
 
 }  // namespace icloth::testing

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 
@@ -250,6 +251,54 @@ TEST(session, tells_when_the_solver_throws) {
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
   EXPECT_NE(session->state().failure.find("out of order"), std::string::npos);
   EXPECT_FALSE(session->state().playing);
+}
+
+TEST(session, survives_a_lost_device) {
+  const auto session = make({.lose = 3, .on_device = true});
+  step(*session, 3);
+  const auto positions = session->state().positions;
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  EXPECT_EQ(session->state().failure, "The solver stopped: device lost");
+  EXPECT_EQ(session->state().positions, positions) << "the last that were told";
+  EXPECT_EQ(session->state().on_device, nullptr);
+  session->step_back();
+  session->reset();
+  session->play();
+  session->save("/nonexistent/folder/file.json");
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes >= 1; }));
+  EXPECT_FALSE(session->state().playing);
+  EXPECT_EQ(session->state().failure, "The solver stopped: device lost");
+  EXPECT_EQ(session->state().positions, positions);
+  session->stop();
+}
+
+TEST(session, hands_nothing_out_for_a_solver_on_the_cpu) {
+  const auto session = make();
+  step(*session, 2);
+  EXPECT_EQ(session->state().on_device, nullptr);
+}
+
+/// The state that is looked at stays whole, on the device too, while the solver goes on.
+TEST(session, every_slot_has_positions_of_its_own_on_the_device) {
+  const auto session = make({.vertices = 300, .on_device = true});
+  session->set_real_time(false);
+  session->play();
+  std::vector<const Vec3f*> memories;
+  std::int64_t step = 0;
+  for (int k = 0; k < 40; ++k) {
+    ASSERT_TRUE(wait_for_step(*session, step + 1));
+    const PublishedState& state = session->state();
+    step = state.step;
+    ASSERT_NE(state.on_device, nullptr);
+    ASSERT_EQ(state.on_device->count, 300);
+    if (std::ranges::find(memories, state.on_device->data) == memories.end())
+      memories.push_back(state.on_device->data);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the solver publishes meanwhile
+    for (std::size_t v = 0; v < 300; ++v) ASSERT_EQ(state.on_device->data[v], state.positions[v]);
+  }
+  EXPECT_LE(memories.size(), 3u) << "the memory of a slot is used again";
+  EXPECT_GE(memories.size(), 2u);
 }
 
 TEST(session, plays_the_scene_s_own_grabs_only_when_asked) {

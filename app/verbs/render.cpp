@@ -12,6 +12,7 @@
 #include "app/options.h"
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
+#include "sim/cuda_devices.h"
 #include "sim/error.h"
 #include "sim/intersections.h"
 #include "sim/scene_io.h"
@@ -43,6 +44,19 @@ Quality parse_quality(const std::string& name) {
   if (name == "interactive") return Quality::interactive;
   if (name == "still") return Quality::still;
   throw InputError("--quality " + name + ": expected draft, interactive or still");
+}
+
+/// How vertices are asked to reach the GPU. Throws DeviceError when interop is demanded and cannot
+/// be had; needs a current context.
+VertexOptions choose_vertices(const RenderOptions& options) {
+  if (options.vertices == "host") return {.on_device = false};
+  if (options.vertices == "auto") return {};
+  if (options.vertices != "interop")
+    throw InputError("--vertices " + options.vertices + ": expected auto, interop or host");
+  std::string reason = "the solver runs on the CPU";
+  if (options.build != Build::cuda32 || !interop_works(cuda_device(), reason))
+    throw DeviceError("--vertices interop: " + reason);
+  return {};
 }
 
 void check_out(const std::string& out) {
@@ -118,6 +132,7 @@ std::vector<Index> offending_faces(const World& world, const StepReport& report)
 /// What the picture shows: the last state that was reached.
 struct Shown {
   std::vector<Vec3f> positions;
+  std::unique_ptr<DevicePositions> on_device;  ///< the same on the solver's device, if it has one
   std::vector<HandleState> handles;
   std::vector<Index> marked_faces;
 };
@@ -144,8 +159,9 @@ int run_render(const RenderOptions& options) {
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);
-  const std::unique_ptr<GlContext> context = make_egl_context();  // before the long part
-  Renderer renderer(world);
+  const std::unique_ptr<GlContext> context =  // before the long part
+      make_egl_context(options.build == Build::cuda32 ? cuda_device() : kNone);
+  Renderer renderer(world, choose_vertices(options));
   renderer.set_quality(quality);
 
   SimulationOptions length;
@@ -161,6 +177,7 @@ int run_render(const RenderOptions& options) {
     if (report) stats.add(*report);
     if (report && !report->accepted) shown.marked_faces = offending_faces(world, *report);
     if (simulator.step_index() < job.steps && (!report || report->accepted)) return;
+    simulator.positions_on_device(shown.on_device);
     simulator.positions(shown.positions);
     shown.handles = simulator.handles();
   };
@@ -171,12 +188,18 @@ int run_render(const RenderOptions& options) {
 
   Frame frame;
   frame.positions = shown.positions;
+  frame.on_device = shown.on_device.get();
   frame.handles = shown.handles;
   frame.marked_faces = shown.marked_faces;
   frame.view = view;
-  write_png(options.out, renderer.picture(frame, camera, size.width, size.height));
-  if (!options.quiet && !result.start_refused)
+  const Image image = renderer.picture(frame, camera, size.width, size.height);
+  if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
+    throw DeviceError("--vertices interop: " + renderer.vertex_way());
+  write_png(options.out, image);
+  if (!options.quiet && !result.start_refused) {
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+    std::printf("vertices by %s\n", renderer.vertex_way().c_str());
+  }
   if (!options.quiet) std::printf("%s\n", options.out.c_str());
   return result.clean() ? 0 : 1;
 }

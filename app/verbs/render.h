@@ -21,13 +21,15 @@ struct RenderOptions {
   std::string camera;             ///< name in the scene, or FILE.json; empty: the first
   std::string view = "shaded";
   std::string quality = "still";   ///< draft, interactive or still
+  std::string vertices = "auto";   ///< way to the GPU: auto, interop or host
   std::string out = "icloth.png";  ///< FILE.png, or FILE.mp4 for a video of the whole run
   double frame_rate = 25;          ///< of the video [1/s]
   std::string stats_file;          ///< step statistics, .csv or .json; empty: none
 };
 
 /// Simulates without a display and writes the picture or video. Returns the exit code: 0, or 1 when
-/// a step was refused. Throws InputError, and DeviceError when no OpenGL is there.
+/// a step was refused. Throws InputError, and DeviceError when no OpenGL is there or --vertices
+/// interop cannot be had.
 int run_render(const RenderOptions& options);
 
 }  // namespace icloth

@@ -15,6 +15,7 @@ struct ViewOptions {
   int threads = 0;                ///< of the CPU builds; 0: all but the one that draws
   std::string record_file;        ///< the session is written here at the end; empty: only Ctrl+S
   std::string screenshot_folder;  ///< where F12 writes; empty: the current folder
+  std::string vertices = "auto";  ///< way to the GPU: auto or host
   bool play = true;               ///< start running
   bool play_script = false;       ///< apply the scene's scripted grabs as well
   int width = 1280, height = 800;
