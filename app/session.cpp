@@ -348,7 +348,7 @@ void Session::read_positions(PublishedState& state) {
     state.handles = simulator_->handles();
   });
   if (!told) {
-    state.on_device.reset();
+    if (state.on_device) state.on_device->failure = "the solver stopped";
     state.handles.clear();
   }
   state.positions = told_positions_;

@@ -277,3 +277,31 @@ TEST_F(Cli, InfoNamesTheBuilds) {
   for (const char* part : {"cpu32", "cpu64", "cuda32", "GB/s", "compiler"})
     EXPECT_TRUE(contains(info.out, part)) << info.out;
 }
+
+TEST_F(Cli, RenderSaysHowVerticesReachOpenGL) {
+  write("drop.json", kDrop);
+  const std::string render = "render drop.json --steps 5 --size 160x120 --quality draft ";
+  const Outcome chosen = icloth(render + "--device cpu --out auto.png");
+  if (chosen.code == 3) GTEST_SKIP() << chosen.err;
+  ASSERT_EQ(chosen.code, 0) << chosen.err;
+  EXPECT_TRUE(contains(chosen.out, "vertices by host copy (the solver runs on the CPU)\n"))
+      << chosen.out;
+  const Outcome host = icloth(render + "--device cpu --vertices host --out host.png");
+  EXPECT_EQ(host.code, 0) << host.err;
+  EXPECT_TRUE(contains(host.out, "vertices by host copy (asked for)\n")) << host.out;
+  EXPECT_EQ(read(folder_ / "auto.png"), read(folder_ / "host.png"));
+  const Outcome shared = icloth(render + "--device cpu --vertices interop --out none.png");
+  EXPECT_EQ(shared.code, 3);
+  EXPECT_EQ(shared.err, "icloth: --vertices interop: the solver runs on the CPU\n");
+  EXPECT_FALSE(fs::exists(folder_ / "none.png"));
+  expect_bad_input(render + "--vertices both", "both");
+
+  const std::string info = icloth("info").out;
+  if (!contains(info, "CUDA-OpenGL interop")) GTEST_SKIP() << "no device: " << info;
+  for (const char* way : {"interop", "host"}) {
+    const Outcome cuda =
+        icloth(render + "--device cuda --vertices " + way + " --out " + way + ".png");
+    EXPECT_EQ(cuda.code, 0) << cuda.err;
+  }
+  EXPECT_EQ(read(folder_ / "interop.png"), read(folder_ / "host.png"));
+}

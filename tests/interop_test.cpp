@@ -218,7 +218,7 @@ TEST_F(Interop, TheRealProbeSaysInOneLineWhyNot) {
   EXPECT_FALSE(where.empty());
   EXPECT_EQ(where.find('\n'), std::string::npos);
   if (cuda_device_count() == 0) {
-    EXPECT_TRUE(where == "no CUDA device" || where == "built without CUDA") << where;
+    EXPECT_TRUE(where == "no CUDA device" || where.starts_with("built without ")) << where;
   } else if (gl_is_software()) {
     EXPECT_NE(where.find("OpenGL runs on llvmpipe, not on "), std::string::npos) << where;
   }

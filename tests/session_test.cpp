@@ -261,7 +261,8 @@ TEST(session, survives_a_lost_device) {
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
   EXPECT_EQ(session->state().failure, "The solver stopped: device lost");
   EXPECT_EQ(session->state().positions, positions) << "the last that were told";
-  EXPECT_EQ(session->state().on_device, nullptr);
+  ASSERT_NE(session->state().on_device, nullptr);
+  EXPECT_EQ(session->state().on_device->failure, "the solver stopped");
   session->step_back();
   session->reset();
   session->play();
