@@ -6,9 +6,13 @@
 
 namespace icloth {
 
+/// The text as one line that a terminal can show: control characters are replaced, and what is
+/// longer than a message may be loses its middle. Names and values in messages come from files.
+std::string one_line(std::string text);
+
 /// Bad usage or bad input: one line naming file, element, value and what was expected. Exit code 2.
 struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit InputError(std::string what) : std::runtime_error(one_line(std::move(what))) {}
 };
 
 /// The asked-for device or display is not there. Exit code 3.

@@ -1,4 +1,4 @@
-// Parsers of the mesh formats, from memory. Used by read_mesh and by tests.
+// Parsers of the mesh formats, from memory. Used by read_mesh, read_point_cache and by tests.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,16 @@ namespace icloth {
 /// `path` is the name for messages. Both throw InputError naming file, line or element, and value.
 MeshFile parse_obj(std::string_view text, const std::string& path);
 MeshFile parse_ply(std::string_view bytes, const std::string& path);
+
+/// Point caches of a mesh with that many vertices; the counts are checked against the size of
+/// `bytes` before memory is taken. Both throw InputError naming file, frame, vertex and value.
+PointCache parse_pc2(std::string_view bytes, const std::string& path, Index vertices);
+PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vertices);
+
+inline constexpr double kLargestCoordinate = 1e9;  ///< of a position in any file [m]
+
+/// Throws InputError naming the first vertex of the frame that is not within kLargestCoordinate.
+void check_frame(std::span<const Vec3f> frame, std::size_t number, const std::string& path);
 
 /// Words of a line, separated by blanks.
 class Words {

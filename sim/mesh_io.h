@@ -27,9 +27,15 @@ MeshFile read_mesh(const std::string& path);
 /// Throws InputError naming the first zero-area face, vertex used by no face, or repeated index.
 void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
 
-/// PC2 point cache: frames of positions. `vertices` is the expected count (checked before memory
-/// is taken). Throws InputError.
-std::vector<std::vector<Vec3f>> read_pc2(const std::string& path, Index vertices);
+/// Positions of a mesh over time.
+struct PointCache {
+  std::vector<std::vector<Vec3f>> frames;  ///< (frames)(V) [m], at least one frame
+  double frame_rate = 0;                   ///< [1/s]; 0: the file does not say
+};
+
+/// PC2 or MDD by extension. `vertices` is the expected count (checked before memory is taken).
+/// Throws InputError naming file, frame, vertex and value.
+PointCache read_point_cache(const std::string& path, Index vertices);
 
 struct NamedMesh {
   std::string name;  ///< "cloth:NAME" or "obstacle:NAME"

@@ -10,8 +10,6 @@
 namespace icloth {
 namespace {
 
-constexpr double kLargest = 1e9;  ///< of a coordinate [m]
-
 struct Corner {
   Index vertex = kNone, uv = kNone;
 };
@@ -60,7 +58,7 @@ class ObjParser {
     const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
     const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool valid = error == std::errc{} && rest == digits.data() + digits.size() &&
-                       std::abs(value) <= kLargest;
+                       std::abs(value) <= kLargestCoordinate;
     if (!valid) refuse(element, word.empty() ? "(end of line)" : word, expected);
     return value;
   }

@@ -15,8 +15,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary files are read as they are");
 
-constexpr double kLargest = 1e9;  ///< of a coordinate [m]
-
 enum class Scalar { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 struct ScalarName {
@@ -217,7 +215,8 @@ class PlyParser {
       }
     }
     for (double x : p)
-      if (!(std::abs(x) <= kLargest)) refuse(where, std::to_string(x), "three finite coordinates");
+      if (!(std::abs(x) <= kLargestCoordinate))
+        refuse(where, std::to_string(x), "three finite coordinates");
     file_.mesh.positions.push_back({p[0], p[1], p[2]});
   }
 

@@ -1,6 +1,7 @@
 // Obstacles of a scene file.
 #include "sim/assets.h"
 #include "sim/body_io.h"
+#include "sim/file_io.h"
 #include "sim/mesh_io.h"
 #include "sim/scene_json.h"
 
@@ -27,9 +28,12 @@ std::vector<Keyframe> parse_motion(const JsonValue& value) {
 void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Placement& place,
                        Obstacle& obstacle) {
   const std::string& name = object["animation"].text();
-  if (!name.ends_with(".pc2")) object["animation"].refuse("a .pc2 file");
-  obstacle.frames =
-      read_pc2(find_asset(name, folder.path), static_cast<Index>(obstacle.mesh.positions.size()));
+  const std::string extension = lower_extension(name);
+  if (extension != ".pc2" && extension != ".mdd") object["animation"].refuse("a .pc2 or .mdd file");
+  const auto vertices = static_cast<Index>(obstacle.mesh.positions.size());
+  PointCache cache = read_point_cache(find_asset(name, folder.path), vertices);
+  if (cache.frame_rate > 0) obstacle.frame_rate = cache.frame_rate;
+  obstacle.frames = std::move(cache.frames);
   for (auto& frame : obstacle.frames)
     for (Vec3f& p : frame) p = convert<float>(place(convert<double>(p)));
 }
@@ -46,8 +50,8 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   Placement place;
   if (object.has("transform")) place = parse_transform(object["transform"]);
   for (Vec3d& p : obstacle.mesh.positions) p = place(p);
-  obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
+  obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);
   refuse_feature(object, "friction", "see parameters: proximity.friction_obstacle");
   refuse_feature(object, "thickness", "see parameters: proximity.thickness");

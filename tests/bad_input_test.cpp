@@ -130,22 +130,80 @@ std::string pc2(std::int32_t vertices, std::int32_t frames, std::size_t floats) 
   return bytes + std::string(4 * floats, '\0');
 }
 
-TEST(BadInput, PointCaches) {
+std::string mdd(std::uint32_t frames, std::uint32_t points, std::size_t floats) {
+  std::string bytes;
+  for (std::uint32_t count : {frames, points})
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(count >> shift & 255);
+  return bytes + std::string(4 * floats, '\0');
+}
+
+/// Reads the bytes as a point cache of that many vertices.
+std::function<void()> read_cache(const std::string& path, Index vertices) {
+  return [path, vertices] { read_point_cache(path, vertices); };
+}
+
+TEST(BadInput, Pc2PointCaches) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& bytes, Index vertices) {
-    const std::string path = folder.write("a.pc2", bytes);
-    return [path, vertices] { read_pc2(path, vertices); };
+    return read_cache(folder.write("a.pc2", bytes), vertices);
   };
   expect_error(read("POINTCACHE2", 3), {"a.pc2", "11 bytes", "32"});
   expect_error(read(std::string(64, 'x'), 3), {"a.pc2", "signature"});
   expect_error(read(pc2(4, 1, 12), 3), {"header", "vertices", "4", "3"});
+  expect_error(read(pc2(0, 1, 12), 0), {"header", "vertices", "0"});
   // 10 GB of positions announced in a file of 68 bytes: refused before memory is taken.
   expect_error(read(pc2(850'000'000, 1, 9), 850'000'000), {"header", "frames", "0 at most"});
   expect_error(read(pc2(3, 2'000'000'000, 9), 3), {"frames", "2000000000", "1 at most"});
   expect_error(read(pc2(3, -1, 9), 3), {"frames", "-1"});
   std::string nan = pc2(1, 1, 3);
   nan.replace(36, 4, "\xff\xff\xff\x7f");
+  expect_error(read(nan, 1), {"frame 0", "vertex 0", "nan", "finite"});
+  nan.replace(36, 4, "\xff\xff\x7f\x7f");  // the largest float would not survive a transform
   expect_error(read(nan, 1), {"frame 0", "vertex 0", "finite"});
+}
+
+TEST(BadInput, MddPointCaches) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& bytes, Index vertices) {
+    return read_cache(folder.write("a.mdd", bytes), vertices);
+  };
+  expect_error(read("", 3), {"a.mdd", "0 bytes", "8"});
+  expect_error(read(mdd(1, 3, 0).substr(0, 7), 3), {"a.mdd", "7 bytes"});
+  expect_error(read(mdd(1, 4, 13), 3), {"header", "points", "value 4", "3, as in the mesh"});
+  expect_error(read(mdd(1, 0, 13), 0), {"header", "points", "value 0"});
+  expect_error(read(mdd(0, 3, 13), 3), {"header", "frames", "value 0", "at least 1"});
+  expect_error(read(mdd(0x80000000, 3, 13), 3), {"frames", "-2147483648"});
+  // The last byte of the second frame is missing.
+  const std::string whole = mdd(2, 3, 20);
+  expect_error(read(whole.substr(0, whole.size() - 1), 3), {"frames", "value 2", "1 at most"});
+  // Sizes that overflow 32 and 64 bits when they are multiplied.
+  expect_error(read(mdd(0x7fffffff, 3, 13), 3), {"frames", "2147483647", "1 at most", "60 bytes"});
+  expect_error(read(mdd(0x7fffffff, 0x7fffffff, 13), 0x7fffffff), {"frames", "0 at most"});
+  std::string bad = mdd(2, 3, 20);
+  bad.replace(12, 4, std::string("\x7f\x80\0\0", 4));
+  expect_error(read(bad, 3), {"frame 1", "time", "inf", "finite"});
+  bad = mdd(2, 3, 20);
+  bad.replace(16 + 36 + 12 + 8, 4, "\x7f\xff\xff\xff");
+  expect_error(read(bad, 3), {"a.mdd", "frame 1", "vertex 1", "nan", "finite"});
+  expect_error(read_cache(folder.write("a.abc", whole), 3), {"a.abc", "'.abc'", ".pc2 or .mdd"});
+  expect_error(read_cache(folder.path("none.mdd"), 3), {"none.mdd", "no such file"});
+}
+
+TEST(BadInput, MessagesAreOneLineOfBoundedLength) {
+  const TemporaryFolder folder;
+  expect_error([&] { read_mesh(folder.path("a\nb.obj")); }, {"a b.obj", "no such file"});
+  EXPECT_EQ(std::string(InputError("\x1b[2J\x7f").what()), "?[2J?");
+  const std::string accents = [] {
+    std::string text;
+    for (int i = 0; i < 10000; ++i) text += "é";
+    return text;
+  }();
+  for (const char* before : {"", "x"}) {
+    const std::string cut = InputError(before + accents + ", expected less").what();
+    EXPECT_LT(cut.size(), 1000u);
+    EXPECT_TRUE(cut.ends_with("é, expected less"));
+    EXPECT_NE(cut.find("é … é"), std::string::npos) << cut;
+  }
 }
 
 /// Scene whose one cloth is a grid, with more keys at the top level and in the cloth.
@@ -162,7 +220,7 @@ TEST(BadInput, Scenes) {
       {"b", scene(R"("gravty": [0, 0, 0],)"), {"'gravty'", "'gravity'"}},
       {"c", scene("", R"(, "pin": [])"), {"cloths[0]", "'pin'", "'pins'"}},
       {"d", scene(R"("time_step": -0.01,)"), {"time_step", "-0.01", "to 0.1 s"}},
-      {"e", scene(R"("time_step": "fast",)"), {"time_step", "\"fast\"", "number"}},
+      {"e", scene(R"("time_step": "fast",)"), {"time_step", "fast", "number"}},
       {"f", scene("", R"(, "material": "silk")"), {"'silk'"}},
       {"g",
        R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "triangles": 0}]})",
@@ -198,6 +256,9 @@ TEST(BadInput, Scenes) {
        {"motion[1].time"}},
       {"x", scene(R"("duration": 1e999,)"), {"1e999"}},
       {"y", scene("", R"(, "seams": [])"), {"seams", "not supported"}},
+      {"clip",
+       scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "animation": "walk.bvh"}],)"),
+       {"obstacles[0].animation", "walk.bvh", "a .pc2 or .mdd file"}},
       {"z", scene("", R"(, "name": "two words")"), {"cloths[0].name", "two words", "one word"}},
       {"deep", std::string(200000, '[') + std::string(200000, ']'), {"deep.json"}},
       {"million",

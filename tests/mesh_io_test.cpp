@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -119,9 +120,47 @@ TEST(MeshIo, Pc2FramesAreReadInOrder) {
   const TemporaryFolder folder;
   std::string bytes = pc2_bytes(2, 3);
   for (int i = 0; i < 18; ++i) append(bytes, 0.5f * static_cast<float>(i));
-  const auto frames = read_pc2(folder.write("a.pc2", bytes), 2);
+  const auto frames = read_point_cache(folder.write("a.pc2", bytes), 2).frames;
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[2].at(1), (Vec3f{7.5f, 8.0f, 8.5f}));
+}
+
+void append_big_endian(std::string& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255);
+}
+
+std::string mdd_bytes(std::uint32_t points, const std::vector<float>& times) {
+  std::string bytes;
+  append_big_endian(bytes, static_cast<std::uint32_t>(times.size()));
+  append_big_endian(bytes, points);
+  for (float time : times) append_big_endian(bytes, std::bit_cast<std::uint32_t>(time));
+  for (std::size_t i = 0; i < 3 * points * times.size(); ++i)
+    append_big_endian(bytes, std::bit_cast<std::uint32_t>(0.5f * static_cast<float>(i)));
+  return bytes;
+}
+
+TEST(MeshIo, MddFramesAreReadInOrder) {
+  const TemporaryFolder folder;
+  const std::string bytes = mdd_bytes(2, {0, 0.04f, 0.08f});
+  EXPECT_EQ(bytes.substr(0, 8), std::string("\0\0\0\3\0\0\0\2", 8));  // big endian
+  const PointCache cache = read_point_cache(folder.write("a.MDD", bytes), 2);
+  ASSERT_EQ(cache.frames.size(), 3u);
+  EXPECT_EQ(cache.frames[0].at(0), (Vec3f{0, 0.5f, 1}));
+  EXPECT_EQ(cache.frames[2].at(1), (Vec3f{7.5f, 8.0f, 8.5f}));
+  EXPECT_NEAR(cache.frame_rate, 25, 1e-4);
+}
+
+TEST(MeshIo, MddTimesGiveTheFrameRateOnlyWhereTheyAreEven) {
+  const auto rate = [](const std::vector<float>& times) {
+    return parse_mdd(mdd_bytes(1, times), "a.mdd", 1).frame_rate;
+  };
+  EXPECT_NEAR(rate({1, 1.034f, 1.066f, 1.1f}), 30, 1e-3);  // rounded by the writer
+  EXPECT_EQ(rate({0, 0, 0}), 0);
+  EXPECT_EQ(rate({0}), 0);
+  EXPECT_EQ(rate({0, 0.1f, 0.5f}), 0);
+  EXPECT_EQ(rate({0.2f, 0.1f, 0}), 0);
+  EXPECT_EQ(rate({0, 1e-30f}), 0);
+  EXPECT_EQ(parse_pc2(pc2_bytes(1, 1) + std::string(12, '\0'), "a.pc2", 1).frame_rate, 0);
 }
 
 TEST(MeshIo, OutsideBodiesAreRead) {
@@ -130,7 +169,7 @@ TEST(MeshIo, OutsideBodiesAreRead) {
   const TriangleMesh rumba = read_body(folder + "rumba.obj");
   EXPECT_EQ(rumba.positions.size(), 12811u);
   EXPECT_EQ(rumba.faces.size(), 25472u);
-  const auto frames = read_pc2(folder + "rumba.pc2", 12811);
+  const auto frames = read_point_cache(folder + "rumba.pc2", 12811).frames;
   EXPECT_EQ(frames.size(), 121u);
 }
 

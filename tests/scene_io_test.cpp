@@ -180,6 +180,31 @@ TEST(SceneIo, KeyframesAreInterpolatedAndHeldAtBothEnds) {
   EXPECT_NEAR(norm(out[0] - Vec3d{-1, 2, 0}), 0, 1e-15);
 }
 
+TEST(SceneIo, BodiesFollowMddPointCachesAtTheirRate) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  // Two frames, three points, 0.25 s apart; the body is at rest, then (1, 0, 0) further.
+  std::string bytes("\0\0\0\2\0\0\0\3\0\0\0\0\x3e\x80\0\0", 16);
+  for (const char* xyz : {"000", "100", "010", "100", "200", "110"})
+    for (const char* digit = xyz; *digit; ++digit)
+      bytes += *digit == '0'   ? std::string(4, '\0')
+               : *digit == '1' ? std::string("\x3f\x80\0\0", 4)
+                               : std::string("\x40\0\0\0", 4);
+  folder.write("a.mdd", bytes);
+  const std::string start = R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "triangles": 8}],
+      "obstacles": [{"mesh": "a.obj", "animation": "a.mdd", "transform": {"scale": 2})";
+  const auto scene = load(folder.write("a.json", start + "}]}"));
+  const Obstacle& body = scene->obstacles.at(0);
+  EXPECT_TRUE(body.moves());
+  EXPECT_EQ(body.frame_rate, 4);
+  std::vector<Vec3d> out;
+  body.pose(0.125, out);
+  ASSERT_EQ(out.size(), 3u);
+  EXPECT_EQ(out[1], (Vec3d{3, 0, 0}));
+  const auto slower = load(folder.write("b.json", start + R"(, "frame_rate": 2}]})"));
+  EXPECT_EQ(slower->obstacles.at(0).frame_rate, 2);
+}
+
 TEST(SceneIo, PointCacheIsInterpolated) {
   Obstacle obstacle;
   obstacle.mesh.positions = {{7, 7, 7}};

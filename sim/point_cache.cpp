@@ -1,0 +1,27 @@
+// What the formats of point caches have in common.
+#include <string>
+
+#include "sim/error.h"
+#include "sim/file_io.h"
+#include "sim/mesh_formats.h"
+
+namespace icloth {
+
+PointCache read_point_cache(const std::string& path, Index vertices) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".pc2" && extension != ".mdd")
+    throw InputError(path + ": value '" + extension + "', expected the extension .pc2 or .mdd");
+  const std::string bytes = read_file(path);
+  return extension == ".pc2" ? parse_pc2(bytes, path, vertices) : parse_mdd(bytes, path, vertices);
+}
+
+void check_frame(std::span<const Vec3f> frame, std::size_t number, const std::string& path) {
+  for (std::size_t v = 0; v < frame.size(); ++v)
+    for (float x : {frame[v].x, frame[v].y, frame[v].z})
+      if (!(std::abs(x) <= static_cast<float>(kLargestCoordinate)))
+        throw InputError(path + ": frame " + std::to_string(number) + ": vertex " +
+                         std::to_string(v) + ": value " + std::to_string(x) +
+                         ", expected three finite coordinates");
+}
+
+}  // namespace icloth
