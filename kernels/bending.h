@@ -36,7 +36,7 @@ ICLOTH_HD inline HingeAngle hinge_angle(const Vec3r x[4]) {
   const Real h0 = std::fmax(norm(d2 - (t0 * length) * e), smallest);
   const Real h1 = std::fmax(norm(d3 - (t1 * length) * e), smallest);
   HingeAngle out;
-  out.theta = std::atan2(dot(e, cross(n0, n1)), dot(n0, n1));
+  out.theta = angle_of(dot(e, cross(n0, n1)), dot(n0, n1));
   out.gradient[2] = (Real(-1) / h0) * n0;
   out.gradient[3] = (Real(-1) / h1) * n1;
   out.gradient[0] = -(1 - t0) * out.gradient[2] - (1 - t1) * out.gradient[3];

@@ -5,6 +5,7 @@
 // during a step: with the secant k the law has no energy, with a frozen k the step minimises one.
 #pragma once
 
+#include "kernels/angle.h"
 #include "kernels/stencil.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -66,7 +67,7 @@ ICLOTH_HD inline Stiffness measured_stiffness(const Fabric& fabric, Sym2 g) {
   if (c12 == 0)
     phi = g.uu >= g.vv ? Real(0) : pi / 2;
   else
-    phi = std::atan2(std::fabs(c12), std::fabs(across));
+    phi = angle_of(std::fabs(c12), std::fabs(across));
   const Real a = std::fmin(8 * phi / pi, Real(4) - Real(1e-6));
   const int row = a < 0 ? 0 : (a >= 3 ? 3 : static_cast<int>(a));
   const Real along = a - static_cast<Real>(row);

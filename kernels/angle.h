@@ -1,0 +1,35 @@
+// Angle of a vector in the plane, with the same bits on the CPU and on a CUDA device.
+#pragma once
+
+#include <cmath>
+
+#include "kernels/platform.h"
+
+namespace icloth {
+
+/// atan2(y, x), in double the one of the library.
+ICLOTH_HD inline double angle_of(double y, double x) { return std::atan2(y, x); }
+
+/// The same in float from operations that IEEE 754 rounds alike everywhere; those of the libraries
+/// differ in their last bits, and contacts let such a difference grow to millimetres within tens of
+/// steps. Error below 3 ulp; 0 for the null vector, NaN when both are infinite.
+ICLOTH_HD inline float angle_of(float y, float x) {
+  constexpr float kPi = 3.14159265358979f;
+  const float ax = std::fabs(x), ay = std::fabs(y);
+  const bool steep = ay > ax;
+  const float low = steep ? ax : ay, high = steep ? ay : ax;
+  if (high == 0) return 0;
+  // atan(t) = π/4 + atan((t − 1)/(t + 1)) leaves |u| ≤ tan(π/8).
+  const bool wide = low > 0.41421356f * high;
+  const float u = wide ? (low - high) / (low + high) : low / high;
+  // Minimax polynomial of (atan(u)/u − 1)/u² in u² over that range, relative error 2e-8.
+  const float z = u * u;
+  const float p = ((0.08060309f * z - 0.1387985f) * z + 0.19977926f) * z - 0.33332955f;
+  float angle = u + u * (z * p);
+  if (wide) angle += kPi / 4;
+  if (steep) angle = kPi / 2 - angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : (y == y ? angle : y);
+}
+
+}  // namespace icloth
