@@ -5,19 +5,12 @@
 // T_d, corrected: with the vertices of colliding pairs alone, moved neighbours would be missed).
 #pragma once
 
+#include "kernels/impact.h"
 #include "sim/broad_phase.h"
 #include "sim/constraints.h"
 #include "sim/state.h"
 
 namespace icloth::ICLOTH_BUILD {
-
-/// A pair that collides within the step.
-struct Impact {
-  std::uint64_t key;
-  Stencil s;     ///< weights at the time of impact
-  Vec3r normal;  ///< unit, at the time of impact, towards the side of the start
-  Real toi;      ///< fraction of the step, not later than the true one
-};
 
 class Ccd {
  public:

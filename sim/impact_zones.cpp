@@ -3,169 +3,10 @@
 #include <algorithm>
 
 #include "kernels/parallel.h"
+#include "kernels/zone_groups.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
-
-/// Old constraints first, then this round's impacts as new constraints.
-struct Concatenate {
-  View<const KeptImpact> old;
-  View<const Impact> impacts;
-  View<KeptImpact> all;
-
-  ICLOTH_HD void operator()(Index i) const {
-    if (i < old.size()) {
-      all[i] = old[i];
-      all[i].fresh = 0;
-    } else {
-      const Impact& m = impacts[i - old.size()];
-      all[i] = {m.key, m.s, m.normal, Real(0), 0, 1};
-    }
-  }
-};
-
-/// The last of equal keys is the newest: its normal and weights replace the old ones.
-struct IsNewest {
-  View<const KeptImpact> sorted;
-  ICLOTH_HD bool operator()(Index i) const {
-    return i + 1 == sorted.size() || sorted[i + 1].key != sorted[i].key;
-  }
-};
-
-struct TakeNewest {
-  View<const KeptImpact> sorted;
-  View<const Index> picked;
-  View<KeptImpact> kept;
-  ICLOTH_HD void operator()(Index i) const {
-    const Index k = picked[i];
-    kept[i] = sorted[k];
-    // A constraint that comes back starts from its old multiplier.
-    if (k > 0 && sorted[k - 1].key == sorted[k].key) kept[i].multiplier = sorted[k - 1].multiplier;
-  }
-};
-
-/// Vertex number of each corner that can move.
-struct FreeCorners {
-  View<const KeptImpact> kept;
-  View<const Real> inverse_mass;
-  View<Int4> slots;
-  ICLOTH_HD void operator()(Index i) const {
-    for (int a = 0; a < 4; ++a) {
-      const Index v = kept[i].s.v[a];
-      slots[i].v[a] = inverse_mass[v] > 0 ? v : kNone;
-    }
-  }
-};
-
-struct HasEntries {
-  View<const Index> first;
-  ICLOTH_HD bool operator()(Index i) const { return first[i + 1] > first[i]; }
-};
-
-struct NumberSlots {
-  View<const Index> active;
-  View<Index> slot_of, label;
-  ICLOTH_HD void operator()(Index i) const {
-    slot_of[active[i]] = i;
-    label[i] = i;
-  }
-};
-
-/// Replaces vertex numbers by slots.
-struct ToSlots {
-  View<const Index> slot_of;
-  View<Int4> slots;
-  ICLOTH_HD void operator()(Index i) const {
-    for (Index& v : slots[i].v)
-      if (v != kNone) v = slot_of[v];
-  }
-};
-
-/// Smallest label among the corners of a constraint.
-struct ConstraintLabels {
-  View<const Int4> slots;
-  View<const Index> label;
-  View<Index> constraint_label;
-  ICLOTH_HD void operator()(Index i) const {
-    Index smallest = label.size();
-    for (const Index s : slots[i].v)
-      if (s != kNone && label[s] < smallest) smallest = label[s];
-    constraint_label[i] = smallest;
-  }
-};
-
-/// Smallest label among the constraints of a vertex, then a jump to that label's own label.
-struct VertexLabels {
-  View<const Index> first, entries, constraint_label, label;
-  View<Index> next;
-  ICLOTH_HD Index operator()(Index i) const {
-    Index smallest = label[i];
-    for (Index k = first[i]; k < first[i + 1]; ++k) {
-      const Index c = constraint_label[entries[k] / 4];
-      if (c < smallest) smallest = c;
-    }
-    if (label[smallest] < smallest) smallest = label[smallest];
-    next[i] = smallest;
-    return smallest != label[i] ? 1 : 0;
-  }
-};
-
-struct LabelKeys {
-  View<const Index> label;
-  View<std::uint64_t> keys;
-  View<Index> order;
-  ICLOTH_HD void operator()(Index i) const {
-    keys[i] = static_cast<std::uint64_t>(label[i]);
-    order[i] = i;
-  }
-};
-
-struct StartsRange {
-  View<const std::uint64_t> keys;
-  ICLOTH_HD bool operator()(Index i) const { return i == 0 || keys[i] != keys[i - 1]; }
-};
-
-struct SetLast {
-  View<Index> list;
-  Index value;
-  ICLOTH_HD void operator()(Index) const { list[list.size() - 1] = value; }
-};
-
-/// Loads the vertices in zone order.
-struct LoadVertices {
-  View<const Index> order, old_active;
-  View<const Vec3r> x1, candidate;
-  View<const Real> vertex_mass;
-  View<Index> active, new_slot;
-  View<Vec3r> target, x, before;
-  View<Real> mass;
-  ICLOTH_HD void operator()(Index i) const {
-    const Index v = old_active[order[i]];
-    active[i] = v;
-    new_slot[order[i]] = i;
-    target[i] = candidate[v];
-    x[i] = before[i] = x1[v];
-    mass[i] = vertex_mass[v];
-  }
-};
-
-struct LoadConstraints {
-  View<const Index> order, new_slot;
-  View<const KeptImpact> kept;
-  View<const Int4> slots;
-  View<ZoneConstraint> constraints;
-  View<Int4> zone_slots;
-  View<Real> multiplier;
-  ICLOTH_HD void operator()(Index i) const {
-    const Index k = order[i];
-    Int4 slot = slots[k];
-    for (Index& s : slot.v)
-      if (s != kNone) s = new_slot[s];
-    constraints[i] = {kept[k].s, slot, kept[k].normal};
-    zone_slots[i] = slot;
-    multiplier[i] = kept[k].multiplier;
-  }
-};
 
 /// Writes the solved positions back and marks what has to be looked at again.
 struct StoreVertices {
@@ -238,6 +79,11 @@ struct TakeCandidate {
   ICLOTH_HD void operator()(Index i) const { x1[i] = candidate[i]; }
 };
 
+struct IsLargeZone {
+  View<const Index> first;
+  ICLOTH_HD bool operator()(Index i) const { return first[i + 1] - first[i] > kLargestTeamZone; }
+};
+
 struct LargestZone {
   View<const Index> first;
   ICLOTH_HD Index operator()(Index i) const { return first[i + 1] - first[i]; }
@@ -248,9 +94,15 @@ struct Correction {
   ICLOTH_HD Real operator()(Index i) const { return norm(x[i] - target[i]); }
 };
 
-struct ZoneIterations {
+struct ZoneResultAt {
   View<const ZoneResult> result;
-  ICLOTH_HD Index operator()(Index i) const { return result[i].iterations; }
+  ICLOTH_HD ZoneResult operator()(Index i) const { return result[i]; }
+};
+struct WorseResult {
+  ICLOTH_HD ZoneResult operator()(ZoneResult a, ZoneResult b) const {
+    return {Max{}(a.iterations, b.iterations), Max{}(a.violation, b.violation),
+            Max{}(a.complementarity, b.complementarity), Max{}(a.momentum, b.momentum)};
+  }
 };
 
 }  // namespace
@@ -314,7 +166,7 @@ void ImpactZones::order_by_zone(const StepContext& step) {
 
   for (Array<Vec3r>* a : {&target_, &x_, &before_, &direction_}) a->resize(active);
   mass_.resize(active);
-  for (Array<Real>* a : {&multiplier_, &shortfall_, &trial_}) a->resize(n);
+  for (Array<Real>* a : {&multiplier_, &shortfall_, &trial_, &scale_}) a->resize(n);
   active_.resize(active);
   new_slot_.resize(active);
   constraints_.resize(n);
@@ -329,6 +181,17 @@ void ImpactZones::order_by_zone(const StepContext& step) {
   incidence_.build(zone_slots_.view(), active);
 }
 
+template <template <class> class Solver>
+void ImpactZones::solve_zones(const SolveZone<Solver>& solve) {
+  const Index zones = vertex_first_.size() - 1;
+  for_each_team("impact_zones.solve", zones, solve);
+  if (active_.size() <= kLargestTeamZone) return;
+  compact("impact_zones.large", zones, IsLargeZone{vertex_first_.view()}, picked_);
+  const Index size = active_.size() + constraints_.size();
+  for (const Index zone : picked_.download())
+    with_device_team("impact_zones.solve_large", size, SolveLargeZone<Solver>{solve, zone});
+}
+
 void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   State& s = step.state;
   const Parameters& p = step.parameters;
@@ -338,30 +201,41 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   const Index zones = vertex_first_.size() - 1;
   results_.resize(zones);
   const ZoneSettings settings{step.offset(),
+                              Real(0.2) * step.offset(),
+                              p.zone_iterations,
                               static_cast<Real>(p.penalty),
                               static_cast<Real>(p.rho),
                               static_cast<Real>(p.step_threshold),
-                              p.zone_iterations,
                               p.chebyshev};
-  const ZoneArrays arrays{constraints_.view(),
-                          constraint_first_.view(),
-                          vertex_first_.view(),
-                          incidence_.first(),
-                          incidence_.entries(),
-                          target_.view(),
-                          mass_.view(),
-                          s.x1.view(),
-                          x_.view(),
-                          before_.view(),
-                          direction_.view(),
-                          multiplier_.view(),
-                          shortfall_.view(),
-                          trial_.view(),
+  const ZoneArrays arrays{constraints_.view(),  constraint_first_.view(),
+                          vertex_first_.view(), incidence_.first(),
+                          incidence_.entries(), target_.view(),
+                          mass_.view(),         s.x1.view(),
+                          s.x0.view(),          x_.view(),
+                          before_.view(),       direction_.view(),
+                          multiplier_.view(),   shortfall_.view(),
+                          trial_.view(),        scale_.view(),
                           results_.view()};
-  const SolveZone solve{arrays, settings};
-  for_each_team("impact_zones.solve", zones, solve);
-  if (active_.size() > kLargestTeamZone) solve_large_zones(solve);
+  switch (p.zone_solver) {
+    case ZoneSolver::augmented_lagrangian:
+      solve_zones(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
+      break;
+    case ZoneSolver::dual:
+      solve_zones(SolveZone<ZoneDual>{arrays, settings});
+      break;
+    case ZoneSolver::linear:
+      solve_zones(SolveZone<ZoneLinear>{arrays, settings});
+      break;
+  }
 
+  store(step);
+  drop_idle();
+  report(step.report, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
+                             IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
+}
+
+void ImpactZones::store(StepContext& step) {
+  State& s = step.state;
   largest_correction_ = reduce("impact_zones.correction", active_.size(), Real(0),
                                Correction{x_.view(), target_.view()}, Max{});
   dirty_.resize(step.mesh.cloth_vertices);
@@ -372,28 +246,32 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   for_each("impact_zones.store", constraints_.size(),
            StoreConstraints{kept_of_.view(), multiplier_.view(), shortfall_.view(), step.offset(),
                             kept_.view()});
+}
+
+void ImpactZones::drop_idle() {
   compact("impact_zones.prune", kept_.size(), StillNeeded{kept_.view()}, picked_);
   unsorted_.resize(picked_.size());
   for_each("impact_zones.prune", picked_.size(),
            Permute<KeptImpact>{kept_.view(), picked_.view(), unsorted_.view()});
   swap(kept_, unsorted_);
+}
 
-  StepReport& report = step.report;
-  report.dynamic_faces = reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
-                                IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{});
+void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
+  const Index zones = results_.size();
+  report.dynamic_faces = dynamic_faces;
   report.zones = std::max<std::int64_t>(report.zones, zones);
   report.largest_zone = std::max<std::int64_t>(
       report.largest_zone,
       reduce("impact_zones.largest", zones, Index{0}, LargestZone{vertex_first_.view()}, Max{}));
-  report.zone_iterations +=
-      reduce("impact_zones.iterations", zones, Index{0}, ZoneIterations{results_.view()}, Max{});
-}
-
-void ImpactZones::solve_large_zones(const SolveZone& solve) {
-  compact("impact_zones.large", vertex_first_.size() - 1, IsLargeZone{solve}, picked_);
-  const Index size = active_.size() + constraints_.size();
-  for (const Index zone : picked_.download())
-    with_device_team("impact_zones.solve_large", size, SolveLargeZone{solve, zone});
+  const ZoneResult worst = reduce("impact_zones.residuals", zones, ZoneResult{0, 0, 0, 0},
+                                  ZoneResultAt{results_.view()}, WorseResult{});
+  const auto larger = [](double& value, Real other) {
+    value = std::max(value, static_cast<double>(other));
+  };
+  report.zone_iterations += worst.iterations;
+  larger(report.zone_violation, worst.violation);
+  larger(report.zone_complementarity, worst.complementarity);
+  larger(report.zone_momentum, worst.momentum);
 }
 
 void ImpactZones::back_to_candidate(StepContext& step) {

@@ -9,16 +9,6 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// A constraint of this step: n·g(x1) ≥ δ.
-struct KeptImpact {
-  std::uint64_t key;
-  Stencil s;
-  Vec3r normal;
-  Real multiplier;  ///< λ of the last solve
-  Index idle;       ///< rounds in a row in which it did nothing
-  Index fresh;      ///< 1: collided in this round
-};
-
 class ImpactZones {
  public:
   /// Forgets the constraints of the last step.
@@ -42,7 +32,11 @@ class ImpactZones {
   void merge(const Array<Impact>& impacts);
   void label_zones(const StepContext& step);
   void order_by_zone(const StepContext& step);
-  void solve_large_zones(const SolveZone& solve);
+  template <template <class> class Solver>
+  void solve_zones(const SolveZone<Solver>& solve);
+  void store(StepContext& step);
+  void drop_idle();
+  void report(StepReport& report, Index dynamic_faces) const;
 
   Array<KeptImpact> kept_;  ///< sorted by key, merge
   Array<KeptImpact> unsorted_, sorted_;
@@ -64,7 +58,7 @@ class ImpactZones {
   Array<ZoneConstraint> constraints_;             ///< by zone, order_by_zone
   Array<Int4> zone_slots_;
   Array<Vec3r> target_, x_, before_, direction_;  ///< see ZoneArrays
-  Array<Real> mass_, multiplier_, shortfall_, trial_;
+  Array<Real> mass_, multiplier_, shortfall_, trial_, scale_;
   Array<ZoneResult> results_;
   Array<std::uint8_t> dirty_;
   Real largest_correction_ = 0;

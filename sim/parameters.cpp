@@ -18,6 +18,9 @@ using P = Parameters;
 
 // Units: k is a repulsion stiffness per area, hence N/m³. "paper" is Tang et al. 2018, "ARCSim" the
 // defaults that Narain, Samii and O'Brien 2012 published with theirs, "measured" our own runs.
+constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
+constexpr std::string_view kZoneSolvers[] = {"augmented_lagrangian", "dual", "linear"};
+
 constexpr ParameterInfo kTable[] = {
     {"step.time_step", "time step dt", "s", &P::time_step, 1e-4, 0.1, true,
      "smoother contacts, less numerical damping, more steps for a second of motion",
@@ -91,21 +94,24 @@ constexpr ParameterInfo kTable[] = {
 
     {"impact_zones.enabled", "impact zones", "", &P::impact_zones_enabled, 0, 1, false,
      "off: a step with impacts is refused, nothing is resolved", "on", "paper, Section 4"},
+    {"impact_zones.solver", "zone solver", "", &P::zone_solver, 0, 2, false,
+     "augmented_lagrangian: the paper's; dual: projected gradient on the impulses",
+     "linear: inelastic projection (Harmon et al. 2008), layers stick", "measured"},
     {"impact_zones.offset", "impact offset δ", "m", &P::offset, 1e-6, 0.01, true,
      "resolved layers end closer to each other, more of them collide again",
      "resolved layers end further apart, visible jumps", "ARCSim; 0.1 × thickness"},
     {"impact_zones.penalty", "penalty μ", "", &P::penalty, 1, 1e6, true,
      "constraints are approached slowly; rho must be lowered with it",
-     "constraints dominate, ill-conditioned", "paper, Eq. 6"},
+     "constraints dominate, ill-conditioned", "paper, Eq. 6", kOnlyPaper},
     {"impact_zones.rho", "Chebyshev ρ", "", &P::rho, 0, 0.99999, false,
      "slower convergence, more robust", "faster convergence, diverges when penalty is small",
-     "paper, Eq. 8"},
+     "paper, Eq. 8", kOnlyPaper},
     {"impact_zones.iterations", "iterations of a zone", "", &P::zone_iterations, 1, 10000, true,
      "faster rounds, more rounds needed", "each round resolves more", "paper, Section 4.1"},
     {"impact_zones.step_threshold", "smallest step length", "", &P::step_threshold, 0, 1e-2, false,
-     "iterates until nothing moves any more", "stops early", "paper, Section 4.1"},
+     "iterates until nothing moves any more", "stops early", "paper, Section 4.1", kOnlyPaper},
     {"impact_zones.chebyshev", "Chebyshev acceleration", "", &P::chebyshev, 0, 1, false,
-     "off: plain descent, slower", "on", "paper, Eq. 8"},
+     "off: plain descent, slower", "on", "paper, Eq. 8", kOnlyPaper},
     {"impact_zones.max_rounds", "rounds", "", &P::max_rounds, 1, 1000, true,
      "gives up sooner and halves the step", "tries longer before the step is halved",
      "own choice; the paper shows up to 200"},
@@ -147,6 +153,11 @@ std::string short_number(double value) {
 }
 
 std::string expected_range(const ParameterInfo& info) {
+  if (const auto choices = parameter_choices(info); !choices.empty()) {
+    std::string text = "one of";
+    for (const std::string_view choice : choices) text += " " + std::string(choice);
+    return text;
+  }
   if (std::holds_alternative<bool P::*>(info.member)) return "true or false";
   const char* kind = std::holds_alternative<int P::*>(info.member) ? "a whole number" : "a number";
   std::string text = std::string(kind) + " from " + short_number(info.minimum) + " to " +
@@ -161,7 +172,14 @@ std::string expected_range(const ParameterInfo& info) {
 }
 
 /// Number behind the text of --set; false when it is not one.
-bool parse_value(std::string_view text, bool words, double& value) {
+bool parse_value(std::string_view text, const ParameterInfo& info, double& value) {
+  const bool words = std::holds_alternative<bool P::*>(info.member);
+  const auto choices = parameter_choices(info);
+  if (!choices.empty()) {
+    const auto found = std::ranges::find(choices, text);
+    value = static_cast<double>(found - choices.begin());
+    return found != choices.end();
+  }
   if (words && (text == "true" || text == "on")) return value = 1, true;
   if (words && (text == "false" || text == "off")) return value = 0, true;
   const char* end = text.data() + text.size();
@@ -207,6 +225,19 @@ const ParameterInfo* find_parameter(std::string_view name) {
   return nullptr;
 }
 
+std::span<const std::string_view> parameter_choices(const ParameterInfo& info) {
+  if (std::holds_alternative<ZoneSolver P::*>(info.member)) return kZoneSolvers;
+  return {};
+}
+
+bool parameter_used(const Parameters& parameters, const ParameterInfo& info) {
+  if (info.only_with.empty()) return true;
+  const std::size_t split = info.only_with.find('=');
+  const ParameterInfo& other = *find_parameter(info.only_with.substr(0, split));
+  const auto place = static_cast<std::size_t>(get_parameter(parameters, other));
+  return parameter_choices(other)[place] == info.only_with.substr(split + 1);
+}
+
 double get_parameter(const Parameters& parameters, const ParameterInfo& info) {
   return std::visit([&](auto member) { return static_cast<double>(parameters.*member); },
                     info.member);
@@ -220,6 +251,8 @@ void set_parameter(Parameters& parameters, const ParameterInfo& info, double val
   if (const auto* number = std::get_if<int P::*>(&info.member))
     parameters.** number = static_cast<int>(value);
   if (const auto* flag = std::get_if<bool P::*>(&info.member)) parameters.** flag = value != 0;
+  if (const auto* choice = std::get_if<ZoneSolver P::*>(&info.member))
+    parameters.** choice = static_cast<ZoneSolver>(static_cast<int>(value));
 }
 
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {
@@ -228,16 +261,23 @@ void set_parameter(Parameters& parameters, std::string_view key, std::string_vie
     throw InputError("parameter '" + std::string(key) + "' is not known, the nearest is '" +
                      std::string(nearest_parameter(key)) + "'");
   double number = 0;
-  if (!parse_value(value, std::holds_alternative<bool P::*>(info->member), number))
-    refuse(*info, value);
+  if (!parse_value(value, *info, number)) refuse(*info, value);
   set_parameter(parameters, *info, number);
 }
 
 std::string dump_parameters(const Parameters& parameters) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const ParameterInfo& info : kTable)
-    std::visit([&](auto member) { json[std::string(info.name)] = parameters.*member; },
-               info.member);
+  for (const ParameterInfo& info : kTable) {
+    auto& value = json[std::string(info.name)];
+    if (const auto choices = parameter_choices(info); !choices.empty())
+      value = choices[static_cast<std::size_t>(get_parameter(parameters, info))];
+    else if (std::holds_alternative<bool P::*>(info.member))
+      value = get_parameter(parameters, info) != 0;
+    else if (std::holds_alternative<int P::*>(info.member))
+      value = static_cast<int>(get_parameter(parameters, info));
+    else
+      value = get_parameter(parameters, info);
+  }
   return json.dump(2);
 }
 

@@ -10,6 +10,8 @@ namespace icloth {
 
 /// Settings of a running simulation. Every member has one row in parameter_table(), which holds
 /// its public name, unit, range and meaning; all of them may change between two steps.
+enum class ZoneSolver { augmented_lagrangian, dual, linear };
+
 struct Parameters {
   // step
   double time_step = 0.01;
@@ -39,6 +41,7 @@ struct Parameters {
   int rebuild_interval = 16;
   // impact zones
   bool impact_zones_enabled = true;
+  ZoneSolver zone_solver = ZoneSolver::dual;
   double offset = 1e-4;
   double penalty = 1e3;
   double rho = 0.9992;
@@ -55,7 +58,8 @@ struct Parameters {
 };
 
 struct ParameterInfo {
-  using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*>;
+  using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
+                              ZoneSolver Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol
@@ -65,14 +69,22 @@ struct ParameterInfo {
   bool logarithmic;         ///< slider scale
   std::string_view lower, higher;  ///< what smaller and larger values do
   std::string_view source;         ///< where the default comes from
+  /// "PARAMETER=CHOICE" when the value matters with that choice only; else empty.
+  std::string_view only_with = "";
 };
+
+/// Names of the values 0, 1, … of a parameter that is chosen by name; empty for numbers.
+std::span<const std::string_view> parameter_choices(const ParameterInfo& info);
+
+/// Whether the value matters with the present choices (see only_with).
+bool parameter_used(const Parameters& parameters, const ParameterInfo& info);
 
 std::span<const ParameterInfo> parameter_table();
 
 /// Row by its public name, or nullptr.
 const ParameterInfo* find_parameter(std::string_view name);
 
-/// Value as a number (bools are 0 or 1).
+/// Value as a number (bools are 0 or 1, choices their place).
 double get_parameter(const Parameters& parameters, const ParameterInfo& info);
 
 /// Sets one value. Throws InputError naming the key, the value and the valid range.

@@ -42,6 +42,9 @@ constexpr ReportColumn kColumns[] = {
     {"max_speed", &R::max_speed},
     {"min_gap", &R::min_gap},
     {"state_hash", &R::state_hash},
+    {"zone_violation", &R::zone_violation},
+    {"zone_complementarity", &R::zone_complementarity},
+    {"zone_momentum", &R::zone_momentum},
 };
 
 }  // namespace

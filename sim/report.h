@@ -29,6 +29,8 @@ struct StepReport {
   std::int64_t proximity_pairs = 0, candidate_pairs = 0, elementary_tests = 0, impacts_first = 0,
                impacts_left = 0;
   std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0;
+  /// How far the worst zone was from an optimum (kernels/zone_problem.h) [m], [m], relative.
+  double zone_violation = 0, zone_complementarity = 0, zone_momentum = 0;
   std::int64_t dynamic_faces = 0, static_faces = 0;  ///< T_d of the last round, and the other faces
   std::int64_t newton_iterations = 0, cg_iterations = 0;
   double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true

@@ -2,6 +2,7 @@
 #include "sim/scene_json.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "sim/error.h"
@@ -14,10 +15,11 @@ constexpr double kMaxTime = 1e5;          ///< [s]
 const NumberRange kTime{0, kMaxTime};
 
 void set_from_json(Parameters& parameters, const std::string& name, const JsonValue& value) {
-  if (!value.json().is_number() && !value.json().is_boolean())
-    value.refuse("a number, true or false");
+  const auto& json = value.json();
+  if (!json.is_number() && !json.is_boolean() && !json.is_string())
+    value.refuse("a number, true or false, or the name of a choice");
   try {
-    set_parameter(parameters, name, value.json().dump());
+    set_parameter(parameters, name, json.is_string() ? json.get<std::string>() : json.dump());
   } catch (const InputError& error) {
     throw InputError(value.where() + ": " + error.what());
   }
@@ -100,6 +102,12 @@ void check_name(const std::string& where, const Object& object, std::set<std::st
   if (!is_word || !names.insert(object.name).second)
     throw InputError(where + ".name: value \"" + object.name +
                      "\", expected one word that no other such object has");
+}
+
+void check_total(const std::string& where, double triangles, const SceneLimits& limits) {
+  if (triangles > limits.triangles)
+    throw InputError(where + ": value " + std::to_string(triangles) +
+                     " triangles, expected at most " + std::to_string(limits.triangles));
 }
 
 void parse_settings(JsonObject& object, Scene& scene) {
@@ -186,18 +194,21 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
 
   std::vector<LoadedCloth> cloths;
   std::set<std::string> cloth_names, obstacle_names;
-  const double triangles = total_grid_triangles(json) * folder.triangle_scale;
-  if (triangles > kMaxTriangles)
-    throw InputError(source + ": cloths: value " + std::to_string(triangles) +
-                     " triangles, expected at most " + std::to_string(kMaxTriangles));
+  double triangles = std::round(total_grid_triangles(json) * folder.triangle_scale);
+  check_total(source + ": cloths", triangles, folder.limits);
   for (const JsonValue& item : object.required("cloths").items()) {
     cloths.push_back(parse_cloth(item, folder, cloths.size()));
     check_name(item.where(), cloths.back().cloth, cloth_names);
+    if (!cloths.back().grid)
+      triangles += static_cast<double>(cloths.back().cloth.mesh.faces.size());
+    check_total(item.where() + " and the others", triangles, folder.limits);
   }
   if (object.has("obstacles")) {
     for (const JsonValue& item : object["obstacles"].items()) {
       scene.obstacles.push_back(parse_obstacle(item, folder, scene.obstacles.size()));
       check_name(item.where(), scene.obstacles.back(), obstacle_names);
+      triangles += static_cast<double>(scene.obstacles.back().mesh.faces.size());
+      check_total(item.where() + " and the others", triangles, folder.limits);
     }
   }
   if (object.has("input"))

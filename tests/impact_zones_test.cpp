@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "sim/simulator.h"
+#include "sim/zone_trial.h"
 #include "tests/stage_support.h"
 
 namespace icloth::cpu32 {
@@ -98,8 +99,14 @@ double gap(const Impact& impact, const std::vector<Vec3r>& x) {
   return dot(convert<double>(impact.normal), sum);
 }
 
-TEST(ImpactZones, SolveOpensEveryConstraint) {
+class ImpactZoneSolvers : public ::testing::TestWithParam<ZoneSolver> {};
+INSTANTIATE_TEST_SUITE_P(All, ImpactZoneSolvers,
+                         ::testing::Values(ZoneSolver::augmented_lagrangian, ZoneSolver::dual,
+                                           ZoneSolver::linear));
+
+TEST_P(ImpactZoneSolvers, OpenEveryConstraint) {
   Crossing c(true);
+  c.stage.parameters.zone_solver = GetParam();
   c.find();
   const std::vector<Impact> impacts = c.ccd.impacts().download();
   ASSERT_GT(impacts.size(), 200u);
@@ -144,8 +151,9 @@ TEST(ImpactZones, MoveOnlyVerticesWithImpacts) {
   EXPECT_NEAR(static_cast<double>(c.zones.largest_correction()), largest, 1e-6);
 }
 
-TEST(ImpactZones, ZonesWithoutObstaclesKeepTheirMomentum) {
+TEST_P(ImpactZoneSolvers, KeepTheMomentumOfZonesWithoutObstacles) {
   Crossing c(false);
+  c.stage.parameters.zone_solver = GetParam();
   c.find();
   const std::vector<Index> zone = union_find(c.stage, c.ccd.impacts().download());
   c.solve();
@@ -162,8 +170,9 @@ TEST(ImpactZones, ZonesWithoutObstaclesKeepTheirMomentum) {
   for (const auto& [label, sum] : moved) EXPECT_LT(norm(sum.first), 0.02 * sum.second) << label;
 }
 
-TEST(ImpactZones, RoundsEndWithoutImpacts) {
+TEST_P(ImpactZoneSolvers, EndTheRoundsWithoutImpacts) {
   Crossing c(true);
+  c.stage.parameters.zone_solver = GetParam();
   c.find();
   int round = 0;
   for (; round < c.stage.parameters.max_rounds && !c.ccd.impacts().empty(); ++round) {
@@ -177,12 +186,14 @@ TEST(ImpactZones, RoundsEndWithoutImpacts) {
 }
 
 /// Two large sheets that pass through each other everywhere: one zone, solved by all threads.
-std::vector<Vec3r> solve_large_zone(int threads, Index& largest, double& smallest_gap) {
+std::vector<Vec3r> solve_large_zone(ZoneSolver solver, int threads, Index& largest,
+                                    double& smallest_gap) {
   set_thread_count(threads);
   Scene scene;
   for (int sheet = 0; sheet < 2; ++sheet)
     scene.cloths.push_back(testing::make_sheet(testing::lying(0.5, 2400), {0, 0.004 * sheet, 0}));
   Stage stage(scene);
+  stage.parameters.zone_solver = solver;
   std::vector<Vec3r> end = stage.start;
   for (Index i = 0; i < stage.world.cloth_vertices; ++i)
     end[at(i)].y += stage.world.object[at(i)] == 1 ? Real(-0.004) : Real(0.004);
@@ -204,18 +215,19 @@ std::vector<Vec3r> solve_large_zone(int threads, Index& largest, double& smalles
   return x1;
 }
 
-TEST(ImpactZones, LargeZonesAreSolvedByAllThreadsWithTheSameBits) {
+TEST_P(ImpactZoneSolvers, GiveLargeZonesToAllThreads) {
   Index largest = 0;
   double smallest_gap = 0;
-  const std::vector<Vec3r> one = solve_large_zone(1, largest, smallest_gap);
+  const std::vector<Vec3r> one = solve_large_zone(GetParam(), 1, largest, smallest_gap);
   EXPECT_GT(largest, kLargestTeamZone);
   EXPECT_GE(smallest_gap, 0.79);
-  EXPECT_TRUE(one == solve_large_zone(4, largest, smallest_gap));
+  EXPECT_TRUE(one == solve_large_zone(GetParam(), 4, largest, smallest_gap));
 }
 
-std::vector<Vec3r> result_with_threads(int threads) {
+std::vector<Vec3r> result_with_threads(ZoneSolver solver, int threads) {
   set_thread_count(threads);
   Crossing c(true);
+  c.stage.parameters.zone_solver = solver;
   c.find();
   for (int round = 0; round < 3; ++round) {
     c.solve();
@@ -225,14 +237,15 @@ std::vector<Vec3r> result_with_threads(int threads) {
   return c.stage.state.x1.download();
 }
 
-TEST(ImpactZones, GiveTheSameBitsWithAnyNumberOfThreads) {
-  const std::vector<Vec3r> one = result_with_threads(1);
-  EXPECT_TRUE(one == result_with_threads(2));
-  EXPECT_TRUE(one == result_with_threads(4));
+TEST_P(ImpactZoneSolvers, GiveTheSameBitsWithAnyNumberOfThreads) {
+  const std::vector<Vec3r> one = result_with_threads(GetParam(), 1);
+  EXPECT_TRUE(one == result_with_threads(GetParam(), 2));
+  EXPECT_TRUE(one == result_with_threads(GetParam(), 4));
 }
 
 TEST(ImpactZones, PlainGradientStepsReachTheConstraintsToo) {
   Crossing c(true, Real(0.003));
+  c.stage.parameters.zone_solver = ZoneSolver::augmented_lagrangian;
   c.stage.parameters.chebyshev = false;
   c.stage.parameters.zone_iterations = 2000;
   c.find();
@@ -240,6 +253,25 @@ TEST(ImpactZones, PlainGradientStepsReachTheConstraintsToo) {
   c.solve();
   const std::vector<Vec3r> x1 = c.stage.state.x1.download();
   for (const Impact& impact : impacts) EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.offset);
+}
+
+/// Sheets that pass through each other: the dual solver ends at the optimum, the others further
+/// away or, for the linear one, where it cannot be told from it.
+TEST(ImpactZones, DualSolverFindsTheOptimum) {
+  for (const Index side : {5, 15, 50}) {
+    const double optimum = cpu64::solve_zone_trial(side, ZoneSolver::dual, 10000).objective;
+    const ZoneTrial dual = solve_zone_trial(side, ZoneSolver::dual, 100);
+    const ZoneTrial paper = solve_zone_trial(side, ZoneSolver::augmented_lagrangian, 100);
+    const Parameters defaults;
+    for (const ZoneTrial& trial : {dual, paper}) {
+      EXPECT_LE(trial.violation, 0.2 * defaults.offset);
+      EXPECT_LT(trial.momentum, 1e-4);
+    }
+    EXPECT_LE(dual.complementarity, 0.2 * defaults.offset);
+    EXPECT_NEAR(dual.objective, optimum, 0.01 * optimum) << side;
+    EXPECT_GE(paper.objective, 0.99 * optimum);
+    EXPECT_LT(dual.iterations, 20);
+  }
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(Parameters, TableCoversEveryMemberOnce) {
         [&](auto member) {
           Parameters parameters;
           auto before = parameters.*member;
-          parameters.*member = static_cast<decltype(before)>(before == 0 ? 1 : 0);
+          parameters.*member = static_cast<decltype(before)>(before == decltype(before){} ? 1 : 0);
           int changed = 0;
           for (const ParameterInfo& other : parameter_table())
             changed += get_parameter(parameters, other) != get_parameter(Parameters{}, other);
@@ -126,10 +126,32 @@ TEST(Parameters, DumpReadsBack) {
   parameters.time_step = 0.1 / 3;
   parameters.max_rounds = 7;
   parameters.chebyshev = false;
+  parameters.zone_solver = ZoneSolver::linear;
   const auto json = nlohmann::json::parse(dump_parameters(parameters));
   EXPECT_EQ(json.size(), parameter_table().size());
   Parameters copy;
-  for (const auto& [name, value] : json.items()) set_parameter(copy, name, value.dump());
+  for (const auto& [name, value] : json.items())
+    set_parameter(copy, name, value.is_string() ? value.get<std::string>() : value.dump());
   for (const ParameterInfo& info : parameter_table())
     EXPECT_EQ(get_parameter(copy, info), get_parameter(parameters, info)) << info.name;
+}
+
+TEST(Parameters, ChoicesAreGivenByName) {
+  Parameters parameters;
+  set_parameter(parameters, "impact_zones.solver", "dual");
+  EXPECT_EQ(parameters.zone_solver, ZoneSolver::dual);
+  const ParameterInfo& penalty = *find_parameter("impact_zones.penalty");
+  EXPECT_FALSE(parameter_used(parameters, penalty));
+  set_parameter(parameters, "impact_zones.solver", "augmented_lagrangian");
+  EXPECT_TRUE(parameter_used(parameters, penalty));
+  for (const char* wrong : {"", "Dual", "1", "dual "}) {
+    try {
+      set_parameter(parameters, "impact_zones.solver", wrong);
+      ADD_FAILURE() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("one of augmented_lagrangian dual linear"),
+                std::string::npos)
+          << error.what();
+    }
+  }
 }

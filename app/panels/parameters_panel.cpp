@@ -46,6 +46,8 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
                       shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
                             ", in this scene " + number(edits.start_value(info)) + unit)
                           .c_str());
+  if (!info.only_with.empty())
+    ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
   ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
   ImGui::TextDisabled("right click: reset; Ctrl+click: type a value");
   ImGui::PopTextWrapPos();
@@ -81,6 +83,20 @@ bool edit_number(const ParameterInfo& info, double& value) {
                              format.c_str(), flags);
 }
 
+bool edit_choice(std::span<const std::string_view> choices, double& value) {
+  bool moved = false;
+  if (!ImGui::BeginCombo("##value", std::string(choices[static_cast<std::size_t>(value)]).c_str()))
+    return false;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!ImGui::Selectable(std::string(choices[k]).c_str(), static_cast<double>(k) == value))
+      continue;
+    value = static_cast<double>(k);
+    moved = true;
+  }
+  ImGui::EndCombo();
+  return moved;
+}
+
 void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   ImGui::PushID(info.name.data());
   ImGui::TableNextRow();
@@ -94,13 +110,17 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   ImGui::SetNextItemWidth(-1);
   double value = edits.value(info);
   bool moved = false;
+  ImGui::BeginDisabled(!parameter_used(edits.values(), info));
   if (std::holds_alternative<bool Parameters::*>(info.member)) {
     bool on = value != 0;
     moved = ImGui::Checkbox("##value", &on);
     value = on;
+  } else if (const auto choices = parameter_choices(info); !choices.empty()) {
+    moved = edit_choice(choices, value);
   } else {
     moved = edit_number(info, value);
   }
+  ImGui::EndDisabled();
   if (ImGui::IsItemActivated()) held = false;
   if (moved) {
     edits.set(info, value, held);

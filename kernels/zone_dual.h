@@ -1,0 +1,107 @@
+// The dual solver of an impact zone: accelerated projected gradient on the multipliers.
+//
+//   x(λ) = x* + a⁻¹ Jᵀ λ,   λ⁺ = max(y + (δ − J x(y)) / L, 0),   y = λ⁺ + β (λ⁺ − λ)
+//
+// J: rows w ⊗ n of the constraints. L_j is Gershgorin's bound of row j of J a⁻¹ Jᵀ, which makes
+// every step safe without a line search and without a penalty. Momentum restarts when it points
+// uphill (O'Donoghue and Candès 2015). The multipliers are impulses, never negative, and every
+// iterate keeps the momentum of the zone by construction.
+#pragma once
+
+#include "kernels/zone_problem.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+template <class Team>
+class ZoneDual : public ZoneProblem<Team> {
+ public:
+  using Base = ZoneProblem<Team>;
+  using Base::Base;
+
+  /// Iterates until no projected step would change a gap by more than a fifth of δ: then nothing
+  /// is short by more, and nothing is pushed further than needed by more. Returns the iterations.
+  ICLOTH_HD int solve() {
+    prepare();
+    double t = 1;
+    int k = 0;
+    for (; k < set_.iterations; ++k) {
+      positions(y_);
+      const Step step = project();
+      if (step.largest <= set_.tolerance) {
+        team_.for_each(nc_, [&](Index j) { multiplier_[j] = projected_[j]; });
+        break;
+      }
+      const bool uphill = step.momentum > 0;
+      const double next = uphill ? 1 : 0.5 * (1 + std::sqrt(1 + 4 * t * t));
+      const Real beta = uphill ? Real(0) : static_cast<Real>((t - 1) / next);
+      t = next;
+      team_.for_each(nc_, [&](Index j) {
+        const Real projected = projected_[j];
+        y_[j] = projected + beta * (projected - multiplier_[j]);
+        multiplier_[j] = projected;
+      });
+    }
+    positions(multiplier_);
+    return k;
+  }
+
+ private:
+  using Base::constraints_, Base::direction_, Base::multiplier_, Base::nc_, Base::nv_, Base::scale_,
+      Base::set_, Base::target_, Base::team_, Base::x_;
+  View<Real>& y_ = Base::trial_;
+  View<Real>& projected_ = Base::shortfall_;
+
+  struct Step {
+    double momentum;  ///< Σ L (y − λ⁺)(λ⁺ − λ)
+    Real largest;     ///< L |λ⁺ − y|
+  };
+  struct CombineSteps {
+    ICLOTH_HD Step operator()(Step a, Step b) const {
+      return {a.momentum + b.momentum, Max{}(a.largest, b.largest)};
+    }
+  };
+
+  /// Bounds L, and the start from the multipliers of the last round.
+  ICLOTH_HD void prepare() {
+    team_.for_each(nv_, [&](Index i) {
+      Real sum = 0;
+      this->for_constraints(i, [&](Index, Real w) { sum += std::fabs(w); });
+      direction_[i].x = sum / static_cast<Real>(this->weight(i));
+    });
+    team_.for_each(nc_, [&](Index j) {
+      Real bound = 0;
+      for (int a = 0; a < 4; ++a) {
+        const Index i = this->corner(j, a);
+        if (i >= 0) bound += std::fabs(constraints_[j].s.w[a]) * direction_[i].x;
+      }
+      scale_[j] = bound;
+      y_[j] = multiplier_[j] = std::fmax(multiplier_[j], Real(0));
+    });
+  }
+
+  /// x(λ)
+  ICLOTH_HD void positions(View<const Real> lambda) const {
+    team_.for_each(nv_, [&](Index i) {
+      Vec3r pull{};
+      this->for_constraints(
+          i, [&](Index j, Real w) { pull += (w * lambda[j]) * constraints_[j].normal; });
+      x_[i] = target_[i] + (Real(1) / static_cast<Real>(this->weight(i))) * pull;
+    });
+  }
+
+  ICLOTH_HD Step project() const {
+    return team_.reduce(
+        nc_, Step{0, 0},
+        [&](Index j) {
+          const Real s = this->shortfall_at(j, [&](Index i) -> const Vec3r& { return x_[i]; });
+          const Real y = y_[j];
+          const Real next = scale_[j] > 0 ? std::fmax(y + s / scale_[j], Real(0)) : Real(0);
+          projected_[j] = next;
+          const Real change = scale_[j] * (y - next);
+          return Step{static_cast<double>(change * (next - multiplier_[j])), std::fabs(change)};
+        },
+        CombineSteps{});
+  }
+};
+
+}  // namespace icloth::ICLOTH_BUILD
