@@ -50,18 +50,21 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, Cloth& cloth
   if (object.has("subdivide"))
     levels = static_cast<int>(object["subdivide"].integer(0, kMaxSubdivisions));
   for (int i = 0; i < levels; ++i) {
-    if (cloth.mesh.faces.size() * 4 > static_cast<std::size_t>(kMaxTriangles))
-      object["subdivide"].refuse("at most 20 million triangles");
+    if (cloth.mesh.faces.size() * 4 > static_cast<std::size_t>(folder.limits.triangles))
+      object["subdivide"].refuse("at most " + std::to_string(folder.limits.triangles) +
+                                 " triangles");
     subdivide(cloth.mesh, cloth.rest);
   }
 }
 
 void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
   JsonObject mesh(object["mesh"]);
+  const Index most = folder.limits.triangles;
   double triangles = kDefaultTriangles;
   if (object.has("triangles"))
-    triangles = static_cast<double>(object["triangles"].integer(2, kMaxTriangles));
-  const GridShape shape = parse_grid(mesh.required("grid"), triangles * folder.triangle_scale);
+    triangles = static_cast<double>(object["triangles"].integer(2, most));
+  const double scaled = std::clamp<double>(std::round(triangles * folder.triangle_scale), 2, most);
+  const GridShape shape = parse_grid(mesh.required("grid"), static_cast<Index>(scaled));
   mesh.finish();
   for (const char* key : {"rest", "subdivide"})
     if (object.has(key))

@@ -23,17 +23,16 @@ struct Overrides {
   double triangles = 0;  ///< 0: as the scene says
 };
 
-double parse_triangles(std::string_view text) {
+double parse_triangles(std::string_view text, Index most) {
   Index number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || rest != text.data() + text.size() || number < 2 ||
-      number > kMaxTriangles)
+  if (error != std::errc{} || rest != text.data() + text.size() || number < 2 || number > most)
     throw InputError("--set triangles: value '" + std::string(text) +
-                     "', expected a whole number from 2 to " + std::to_string(kMaxTriangles));
+                     "', expected a whole number from 2 to " + std::to_string(most));
   return number;
 }
 
-Overrides split_overrides(std::span<const std::string> arguments) {
+Overrides split_overrides(std::span<const std::string> arguments, const SceneLimits& limits) {
   Overrides overrides;
   for (std::string_view argument : arguments) {
     const std::size_t equals = argument.find('=');
@@ -41,7 +40,7 @@ Overrides split_overrides(std::span<const std::string> arguments) {
       throw InputError("--set: value '" + std::string(argument) + "', expected KEY=VALUE");
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
     if (key == "triangles") {
-      overrides.triangles = parse_triangles(value);
+      overrides.triangles = parse_triangles(value, limits.triangles);
     } else {
       overrides.parameters.emplace_back(key, value);
     }
@@ -138,10 +137,10 @@ std::string scene_path(const std::string& argument) {
   return path;
 }
 
-Scene scene_of_json(const std::string& argument, double triangles) {
+Scene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
-  SceneFolder folder{fs::path(path).parent_path().string(), 1};
+  SceneFolder folder{fs::path(path).parent_path().string(), 1, limits};
   if (triangles > 0) {
     const double own = total_grid_triangles(json);
     if (!(own > 0)) throw InputError(path + ": --set triangles: no cloth of the scene is a grid");
@@ -153,15 +152,16 @@ Scene scene_of_json(const std::string& argument, double triangles) {
 }  // namespace
 
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
-                                        std::span<const std::string> overrides) {
-  const Overrides set = split_overrides(overrides);
+                                        std::span<const std::string> overrides,
+                                        const SceneLimits& limits) {
+  const Overrides set = split_overrides(overrides, limits);
   auto scene = std::make_shared<Scene>();
   if (is_mesh_name(argument)) {
     if (set.triangles > 0)
       throw InputError(argument + ": --set triangles: a mesh file has no grid");
     *scene = scene_of_mesh(argument);
   } else {
-    *scene = scene_of_json(argument, set.triangles);
+    *scene = scene_of_json(argument, set.triangles, limits);
     if (set.triangles > 0) fit_thickness(*scene);
   }
   scene->source = argument;

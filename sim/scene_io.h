@@ -9,11 +9,18 @@
 
 namespace icloth {
 
+/// What a scene may ask for at most: a small file must not take all memory.
+struct SceneLimits {
+  Index triangles = 20'000'000;      ///< of all cloths and obstacles together
+  Index body_triangles = 8'000'000;  ///< of one sphere, capsule, box, plane or funnel
+};
+
 /// SCENE argument of the command line: built-in name, scene JSON, or mesh file.
 /// `overrides` are --set arguments "KEY=VALUE"; keys are parameters, or "triangles".
 /// Throws InputError with one line: file, element, value, what was expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
-                                        std::span<const std::string> overrides);
+                                        std::span<const std::string> overrides,
+                                        const SceneLimits& limits = {});
 
 /// Folder with scenes/ materials/ bodies/ … : $ICLOTH_ASSETS, beside the program, or the source
 /// tree.

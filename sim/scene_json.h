@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "sim/json_reader.h"
-#include "sim/scene.h"
+#include "sim/scene_io.h"
 #include "sim/shapes.h"
 
 namespace icloth {
@@ -29,9 +29,8 @@ struct LoadedCloth {
 struct SceneFolder {
   std::string path;           ///< files are looked for here, then in the assets folder
   double triangle_scale = 1;  ///< factor on the triangles of every grid
+  SceneLimits limits;
 };
-
-inline constexpr Index kMaxTriangles = 20'000'000;  ///< of all cloths
 
 /// {"translate": [3], "rotate": [3 degrees, about x, then y, then z] or {"axis", "angle"}, "scale"}
 Placement parse_transform(JsonValue value);
@@ -40,9 +39,10 @@ Placement parse_transform(JsonValue value);
 Vec3d parse_rotation(JsonValue value);
 
 /// Grid of about `triangles` triangles from {"size", "orientation", "bend"}.
-GridShape parse_grid(JsonValue value, double triangles);
-/// Body from {"sphere" | "capsule" | "box" | "plane" | "funnel": {…}}.
-TriangleMesh parse_body_shape(JsonValue value);
+GridShape parse_grid(JsonValue value, Index triangles);
+/// Body of at most about so many triangles from {"sphere" | "capsule" | "box" | "plane" |
+/// "funnel": {…}}.
+TriangleMesh parse_body_shape(JsonValue value, Index most_triangles);
 
 /// Refuses a key of the format that this version does not act on.
 void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead);

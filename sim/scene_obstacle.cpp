@@ -46,7 +46,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   obstacle.name = object.text("name", "obstacle" + std::to_string(number));
   const JsonValue mesh = object.required("mesh");
   obstacle.mesh = mesh.json().is_string() ? read_body(find_asset(mesh.text(), folder.path))
-                                          : parse_body_shape(mesh);
+                                          : parse_body_shape(mesh, folder.limits.body_triangles);
   Placement place;
   if (object.has("transform")) place = parse_transform(object["transform"]);
   for (Vec3d& p : obstacle.mesh.positions) p = place(p);

@@ -10,8 +10,8 @@ namespace icloth {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMaxCells = 4e6;  ///< of a box, a plane or a funnel
 constexpr Index kDefaultTriangles = 2000;
+constexpr Index kMaxRoundTriangles = 1'000'000;
 const NumberRange kSize{1e-6, 1e6};
 
 /// Rotation vector of a rotation matrix; near half a turn the axis comes from the symmetric part.
@@ -27,7 +27,11 @@ Vec3d rotation_vector(const Mat3<double>& r) {
   return angle * normalized(Vec3d{r(0, k) + (k == 0), r(1, k) + (k == 1), r(2, k) + (k == 2)});
 }
 
-TriangleMesh parse_funnel(const JsonValue& value) {
+[[noreturn]] void refuse_cells(const JsonValue& value, Index most_triangles) {
+  value.refuse("a coarser edge: at most " + std::to_string(most_triangles) + " triangles");
+}
+
+TriangleMesh parse_funnel(const JsonValue& value, Index most_triangles) {
   JsonObject object(value);
   FunnelShape shape;
   shape.top_radius = object.number("top_radius", shape.top_radius, kSize);
@@ -40,52 +44,53 @@ TriangleMesh parse_funnel(const JsonValue& value) {
   const double outline = 2 * (shape.top_radius + shape.cone_height + shape.pipe_length);
   const double around =
       std::max(std::numbers::pi * (shape.top_radius + shape.bottom_radius), 6 * shape.edge);
-  if (outline * around / (shape.edge * shape.edge) > kMaxCells)
-    value.refuse("a coarser edge: at most 4 million cells");
+  if (outline * around / (shape.edge * shape.edge) > most_triangles / 2)
+    refuse_cells(value, most_triangles);
   return make_funnel(shape);
 }
 
-TriangleMesh parse_box(const JsonValue& value) {
+TriangleMesh parse_box(const JsonValue& value, Index most_triangles) {
   JsonObject object(value);
   const Vec3d size = object.required("size").vector(kSize);
   const double largest = norm_max(size), edge = object.number("edge", largest / 10, kSize);
   object.finish();
-  if (6 * largest * largest / (edge * edge) > kMaxCells)
-    value.refuse("a coarser edge: at most 4 million cells");
+  if (6 * largest * largest / (edge * edge) > most_triangles / 2)
+    refuse_cells(value, most_triangles);
   return make_box(size, edge);
 }
 
-TriangleMesh parse_plane(const JsonValue& value) {
+TriangleMesh parse_plane(const JsonValue& value, Index most_triangles) {
   JsonObject object(value);
   const std::vector<double> size = object.required("size").numbers(2, kSize);
   const double edge = object.number("edge", std::max(size[0], size[1]) / 20, kSize);
   object.finish();
-  if (std::max(size[0], edge) * std::max(size[1], edge) / (edge * edge) > kMaxCells)
-    value.refuse("a coarser edge: at most 4 million cells");
+  if (std::max(size[0], edge) * std::max(size[1], edge) / (edge * edge) > most_triangles / 2)
+    refuse_cells(value, most_triangles);
   return make_plane(size[0], size[1], edge);
 }
 
-TriangleMesh parse_round(const JsonValue& value, bool capsule) {
+TriangleMesh parse_round(const JsonValue& value, bool capsule, Index most_triangles) {
   JsonObject object(value);
   const double radius = object.required("radius").number(kSize);
   // Longer ones would be cut into rings without bound.
   const double length = capsule ? object.required("length").number({0, 1000 * radius}) : 0;
   Index triangles = kDefaultTriangles;
   if (object.has("triangles"))
-    triangles = static_cast<Index>(object["triangles"].integer(20, 1'000'000));
+    triangles = static_cast<Index>(
+        object["triangles"].integer(20, std::min(kMaxRoundTriangles, most_triangles)));
   object.finish();
   return capsule ? make_capsule(radius, length, triangles) : make_sphere(radius, triangles);
 }
 
 }  // namespace
 
-GridShape parse_grid(JsonValue value, double triangles) {
+GridShape parse_grid(JsonValue value, Index triangles) {
   JsonObject object(value);
   GridShape shape;
   const std::vector<double> size = object.required("size").numbers(2, kSize);
   shape.width = size[0];
   shape.height = size[1];
-  shape.triangles = static_cast<Index>(std::clamp<double>(std::round(triangles), 2, kMaxTriangles));
+  shape.triangles = triangles;
   const std::string orientation = object.text("orientation", "vertical");
   if (orientation != "vertical" && orientation != "horizontal")
     object["orientation"].refuse("\"vertical\" or \"horizontal\"");
@@ -100,15 +105,15 @@ GridShape parse_grid(JsonValue value, double triangles) {
   return shape;
 }
 
-TriangleMesh parse_body_shape(JsonValue value) {
+TriangleMesh parse_body_shape(JsonValue value, Index most_triangles) {
   JsonObject object(value);
   if (value.json().size() != 1) value.refuse("one of sphere, capsule, box, plane, funnel");
   TriangleMesh mesh;
-  if (object.has("sphere")) mesh = parse_round(object["sphere"], false);
-  if (object.has("capsule")) mesh = parse_round(object["capsule"], true);
-  if (object.has("box")) mesh = parse_box(object["box"]);
-  if (object.has("plane")) mesh = parse_plane(object["plane"]);
-  if (object.has("funnel")) mesh = parse_funnel(object["funnel"]);
+  if (object.has("sphere")) mesh = parse_round(object["sphere"], false, most_triangles);
+  if (object.has("capsule")) mesh = parse_round(object["capsule"], true, most_triangles);
+  if (object.has("box")) mesh = parse_box(object["box"], most_triangles);
+  if (object.has("plane")) mesh = parse_plane(object["plane"], most_triangles);
+  if (object.has("funnel")) mesh = parse_funnel(object["funnel"], most_triangles);
   object.finish();
   return mesh;
 }

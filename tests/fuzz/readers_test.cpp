@@ -1,0 +1,113 @@
+// The readers over the seeds of the fuzzer, all of them good files, and over files that are like
+// those that once broke a reader: good_… must be accepted, bad_… refused, all quickly and in
+// little memory.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+
+#include "sim/file_io.h"
+#include "tests/fuzz/support.h"
+#include "tests/fuzz/targets.h"
+
+namespace {
+
+std::atomic<std::size_t> largest_request{0};  // of memory [bytes]
+
+void* take(std::size_t size) {
+  std::size_t before = largest_request;
+  while (size > before && !largest_request.compare_exchange_weak(before, size)) {
+  }
+  if (void* memory = std::malloc(std::max<std::size_t>(size, 1))) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return take(size); }
+void* operator new[](std::size_t size) { return take(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace icloth::fuzz {
+
+void PrintTo(const Target& target, std::ostream* out) { *out << target.name; }
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kLargestRequest = 64 << 20;  // far above what the small files need
+
+std::vector<fs::path> files_of(const std::string& kind, const Target& target) {
+  std::vector<fs::path> files;
+  const fs::path folder = fs::path(ICLOTH_FUZZ_FOLDER) / kind / target.name;
+  std::error_code error;  // a reader that was never broken has no folder
+  for (const auto& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+void expect(const Target& target, const fs::path& file, bool good) {
+  SCOPED_TRACE(file.string());
+#if !defined(ICLOTH_HAS_ZLIB)
+  if (file.extension() == ".gz") return;
+#endif
+  const std::string bytes = read_file(file.string());
+  largest_request = 0;
+  const auto start = Clock::now();
+  const std::string reason = target.read(bytes);
+  EXPECT_EQ(reason.empty(), good) << reason;
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 2.0);
+  EXPECT_LT(largest_request, kLargestRequest);
+}
+
+class Readers : public testing::TestWithParam<Target> {};
+
+TEST_P(Readers, AcceptTheSeeds) {
+  const auto files = files_of("seeds", GetParam());
+  EXPECT_FALSE(files.empty());
+  for (const fs::path& file : files) expect(GetParam(), file, true);
+}
+
+TEST_P(Readers, StandWhatOnceBrokeThem) {
+  for (const fs::path& file : files_of("regressions", GetParam())) {
+    const std::string name = file.filename().string();
+    ASSERT_TRUE(name.starts_with("good_") || name.starts_with("bad_")) << name;
+    expect(GetParam(), file, name.starts_with("good_"));
+  }
+}
+
+/// Cut off anywhere, and with any byte changed: refused or accepted, but nothing else.
+TEST_P(Readers, StandCutAndChangedSeeds) {
+  for (const fs::path& file : files_of("seeds", GetParam())) {
+    SCOPED_TRACE(file.string());
+    std::string bytes = read_file(file.string());
+    const std::size_t stride = 1 + bytes.size() / 100;
+    for (std::size_t i = 0; i < bytes.size(); i += stride) {
+      EXPECT_NO_THROW(GetParam().read(bytes.substr(0, i))) << "cut at " << i;
+      for (char changed : {'\0', '9', '\xff'}) {
+        const char kept = std::exchange(bytes[i], changed);
+        EXPECT_NO_THROW(GetParam().read(bytes)) << "changed at " << i;
+        bytes[i] = kept;
+      }
+    }
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<Target>& test) {
+  return std::string(test.param.name);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Readers, testing::ValuesIn(targets().begin(), targets().end()),
+                         name_of);
+
+}  // namespace
+}  // namespace icloth::fuzz
