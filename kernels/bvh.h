@@ -73,11 +73,13 @@ ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& 
   return mask;
 }
 
-/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps.
+/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps. Returns how
+/// many boxes were compared with.
 template <class Found>
-ICLOTH_HD void query_tree(const TreeView& tree, const Box& box, Index after_leaf,
-                          const Found& found) {
-  if (tree.levels == 0) return;
+ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_leaf,
+                           const Found& found) {
+  if (tree.levels == 0) return 0;
+  Index tests = 0;
   struct Entry {
     int level;
     Index node;
@@ -86,6 +88,7 @@ ICLOTH_HD void query_tree(const TreeView& tree, const Box& box, Index after_leaf
   stack[depth++] = {tree.levels - 1, 0};
   while (depth > 0) {
     const Entry top = stack[--depth];
+    tests += kTreeWidth;
     const TreeNode& node = tree.nodes[tree.level_first[top.level] + top.node];
     unsigned mask = overlapping_children(node, box);
     for (int c = 0; mask != 0; ++c, mask >>= 1) {
@@ -99,6 +102,7 @@ ICLOTH_HD void query_tree(const TreeView& tree, const Box& box, Index after_leaf
       }
     }
   }
+  return tests;
 }
 
 /// 30-bit Morton code of a point in the unit cube.

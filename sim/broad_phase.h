@@ -6,29 +6,11 @@
 // CCD round, and the next steps too while the cloth hardly moves.
 #pragma once
 
-#include "kernels/bvh.h"
+#include "sim/hash_pairs.h"
 #include "sim/state.h"
+#include "sim/tree_pairs.h"
 
 namespace icloth::ICLOTH_BUILD {
-
-/// Tree over a range of elements.
-class Tree {
- public:
-  /// Sorts the elements anew (Morton order of their boxes' centres), then refits.
-  void build(View<const Box> boxes, Index first);
-  /// New boxes, old order.
-  void refit(View<const Box> boxes);
-  bool empty() const { return items_.size() == 0; }
-  TreeView view() const;
-
- private:
-  Array<Index> items_;  ///< element numbers in leaf order
-  Array<TreeNode> nodes_;
-  Array<std::uint64_t> codes_;
-  Index level_first_[kTreeLevels] = {};
-  Index level_count_[kTreeLevels] = {};
-  int levels_ = 0;
-};
 
 class BroadPhase {
  public:
@@ -36,30 +18,37 @@ class BroadPhase {
   /// present lists already do.
   void prepare(StepContext& step);
   /// Makes the candidate lists cover x0 → x1 as it is now.
-  void cover_candidate(StepContext& step, bool after_impacts = false);
+  void cover_candidate(StepContext& step);
+  /// The same for pairs with a dirty vertex (cloth_vertices) alone, where the lists do not cover
+  /// them already: the clean ones have been tested.
+  void cover_dirty(StepContext& step, View<const std::uint8_t> dirty);
+  /// Makes boxes and lists anew whatever is there, as a detection without coherence would.
+  void cover_again(StepContext& step);
   /// Forgets the lists (the state was set from outside).
-  void invalidate() { valid_ = false; }
+  void invalidate() { boxes_valid_ = complete_ = false; }
 
   std::int64_t candidate_count() const {
-    return std::int64_t{vertex_faces_.size()} + edge_edges_.size();
+    return std::int64_t{vertex_faces().size()} + edge_edges().size();
   }
-  const Array<Pair>& vertex_faces() const { return vertex_faces_; }
-  const Array<Pair>& edge_edges() const { return edge_edges_; }
+  const Array<Pair>& vertex_faces() const { return candidates_.vertex_faces; }
+  const Array<Pair>& edge_edges() const { return candidates_.edge_edges; }
 
  private:
   /// True while every path, with `margin` around it, lies in its vertex's trusted region.
   bool covers(StepContext& step, bool predicted, Real margin) const;
   void make_boxes(StepContext& step, bool predicted, bool after_impacts);
-  void find_candidates(const StepContext& step);
+  /// `dirty`: empty for all pairs.
+  void find_candidates(StepContext& step, View<const std::uint8_t> dirty);
+  ElementBoxes boxes() const { return {vertex_box_.view(), face_box_.view(), edge_box_.view()}; }
 
   Array<Box> vertex_box_;  ///< trusted region of each vertex (vertices), make_boxes
   Array<Box> face_box_, edge_box_;
-  Tree cloth_faces_, obstacle_faces_, cloth_edges_, obstacle_edges_;
-  Array<Pair> vertex_faces_;  ///< (vertex, face) candidates, find_candidates
-  Array<Pair> edge_edges_;    ///< (edge, edge) candidates, the smaller edge first
-  Array<Pair> found_;         ///< one query's results
+  TreePairs tree_;
+  HashPairs hash_;
+  Candidates candidates_;  ///< find_candidates
   int refits_ = 0;
-  bool valid_ = false;
+  bool boxes_valid_ = false;
+  bool complete_ = false;  ///< the lists hold all pairs of the boxes, not only dirty ones
 };
 
 }  // namespace icloth::ICLOTH_BUILD

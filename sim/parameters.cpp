@@ -20,6 +20,7 @@ using P = Parameters;
 // defaults that Narain, Samii and O'Brien 2012 published with theirs, "measured" our own runs.
 constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
 constexpr std::string_view kZoneSolvers[] = {"augmented_lagrangian", "dual", "linear"};
+constexpr std::string_view kBroadPhaseMethods[] = {"tree", "hash"};
 
 constexpr ParameterInfo kTable[] = {
     {"step.time_step", "time step dt", "s", &P::time_step, 1e-4, 0.1, true,
@@ -88,9 +89,18 @@ constexpr ParameterInfo kTable[] = {
      "contacts are guessed from the velocities once; more impacts are left",
      "contacts that close or open during the solve are found and solved again", "measured"},
 
+    {"broad_phase.method", "broad phase", "", &P::broad_phase_method, 0, 1, false,
+     "tree: bounding volumes, refitted and rebuilt now and then",
+     "hash: a grid of sorted cells, as in the paper's family", "measured"},
     {"broad_phase.rebuild_interval", "tree rebuilt every", "steps", &P::rebuild_interval, 1, 1000,
      true, "tighter boxes, more time spent building", "looser boxes, more candidate pairs",
-     "measured"},
+     "measured", "broad_phase.method=tree"},
+    {"broad_phase.count_tests", "count box tests", "", &P::count_box_tests, 0, 1, false, "off",
+     "on: fills the column box_tests, searches twice", "own choice"},
+
+    {"ccd.incremental", "incremental rounds", "", &P::ccd_incremental, 0, 1, false,
+     "off: every round makes the lists anew and tests all pairs; same impacts, slower",
+     "on: later rounds look at pairs with a dirty vertex", "paper, Section 3"},
 
     {"impact_zones.enabled", "impact zones", "", &P::impact_zones_enabled, 0, 1, false,
      "off: a step with impacts is refused, nothing is resolved", "on", "paper, Section 4"},
@@ -227,6 +237,7 @@ const ParameterInfo* find_parameter(std::string_view name) {
 
 std::span<const std::string_view> parameter_choices(const ParameterInfo& info) {
   if (std::holds_alternative<ZoneSolver P::*>(info.member)) return kZoneSolvers;
+  if (std::holds_alternative<BroadPhaseMethod P::*>(info.member)) return kBroadPhaseMethods;
   return {};
 }
 
@@ -251,8 +262,10 @@ void set_parameter(Parameters& parameters, const ParameterInfo& info, double val
   if (const auto* number = std::get_if<int P::*>(&info.member))
     parameters.** number = static_cast<int>(value);
   if (const auto* flag = std::get_if<bool P::*>(&info.member)) parameters.** flag = value != 0;
-  if (const auto* choice = std::get_if<ZoneSolver P::*>(&info.member))
-    parameters.** choice = static_cast<ZoneSolver>(static_cast<int>(value));
+  if (const auto* solver = std::get_if<ZoneSolver P::*>(&info.member))
+    parameters.** solver = static_cast<ZoneSolver>(static_cast<int>(value));
+  if (const auto* method = std::get_if<BroadPhaseMethod P::*>(&info.member))
+    parameters.** method = static_cast<BroadPhaseMethod>(static_cast<int>(value));
 }
 
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {

@@ -11,6 +11,7 @@ namespace icloth {
 /// Settings of a running simulation. Every member has one row in parameter_table(), which holds
 /// its public name, unit, range and meaning; all of them may change between two steps.
 enum class ZoneSolver { augmented_lagrangian, dual, linear };
+enum class BroadPhaseMethod { tree, hash };
 
 struct Parameters {
   // step
@@ -38,7 +39,11 @@ struct Parameters {
   int cg_max_iterations = 500;
   int contact_passes = 2;
   // broad phase
+  BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
   int rebuild_interval = 16;
+  bool count_box_tests = false;
+  // ccd
+  bool ccd_incremental = true;
   // impact zones
   bool impact_zones_enabled = true;
   ZoneSolver zone_solver = ZoneSolver::dual;
@@ -59,7 +64,7 @@ struct Parameters {
 
 struct ParameterInfo {
   using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
-                              ZoneSolver Parameters::*>;
+                              ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol

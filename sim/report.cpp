@@ -45,6 +45,7 @@ constexpr ReportColumn kColumns[] = {
     {"zone_violation", &R::zone_violation},
     {"zone_complementarity", &R::zone_complementarity},
     {"zone_momentum", &R::zone_momentum},
+    {"box_tests", &R::box_tests},
 };
 
 }  // namespace

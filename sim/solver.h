@@ -41,7 +41,7 @@ class Solver final : public Simulator {
   bool try_substep(StepReport& report, double start, double dt, bool last_resort);
   bool resolve_by_zones(StepContext& step);
   bool resolve_by_rollback(StepContext& step);
-  void find_impacts(StepContext& step, bool incremental);
+  void find_impacts(StepContext& step, bool first_round);
   void begin_substep(double start, double dt);
   void accept_substep(double dt);
   void report_offending(StepReport& report) const;

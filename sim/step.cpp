@@ -53,7 +53,7 @@ bool Solver::resolve_by_zones(StepContext& step) {
   StepReport& report = step.report;
   impact_zones_.begin_step();
   for (int round = 0;; ++round) {
-    find_impacts(step, round > 0);
+    find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
     if (report.impacts_left == 0) return true;
     if (round == parameters_.max_rounds || !parameters_.impact_zones_enabled) return false;
@@ -72,7 +72,7 @@ bool Solver::resolve_by_rollback(StepContext& step) {
   if (!step.report.finite || !parameters_.impact_zones_enabled) return false;
   impact_zones_.back_to_candidate(step);
   for (int round = 0; round < 10 * parameters_.max_rounds; ++round) {
-    find_impacts(step, round > 0);
+    find_impacts(step, round == 0);
     if (step.report.impacts_left == 0) return true;
     ++step.report.rounds;
     timed(step.report.ms_impact_zones, [&] { impact_zones_.roll_back(step, ccd_.impacts()); });
@@ -80,9 +80,18 @@ bool Solver::resolve_by_rollback(StepContext& step) {
   return false;
 }
 
-void Solver::find_impacts(StepContext& step, bool incremental) {
+/// All pairs in the first round; later, unless told otherwise, those with a dirty vertex.
+void Solver::find_impacts(StepContext& step, bool first_round) {
   StepReport& report = step.report;
-  timed(report.ms_broad_phase, [&] { broad_phase_.cover_candidate(step, incremental); });
+  const bool incremental = !first_round && parameters_.ccd_incremental;
+  timed(report.ms_broad_phase, [&] {
+    if (incremental)
+      broad_phase_.cover_dirty(step, impact_zones_.dirty());
+    else if (first_round)
+      broad_phase_.cover_candidate(step);
+    else
+      broad_phase_.cover_again(step);
+  });
   timed(report.ms_ccd, [&] { ccd_.find(step, broad_phase_, impact_zones_.dirty(), incremental); });
   report.impacts_left = ccd_.impacts().size();
 }

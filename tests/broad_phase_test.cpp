@@ -88,9 +88,15 @@ std::int64_t lists_made() {
   return 0;
 }
 
-TEST(BroadPhase, CoversPredictedPathsAndTheThickness) {
+/// Both finders have to give complete and valid lists.
+class BroadPhaseMethods : public ::testing::TestWithParam<BroadPhaseMethod> {};
+INSTANTIATE_TEST_SUITE_P(All, BroadPhaseMethods,
+                         ::testing::Values(BroadPhaseMethod::tree, BroadPhaseMethod::hash));
+
+TEST_P(BroadPhaseMethods, CoverPredictedPathsAndTheThickness) {
   std::mt19937 random(1);
   Stage stage(two_sheets_and_a_ball());
+  stage.parameters.broad_phase_method = GetParam();
   BroadPhase broad_phase;
   for (int trial = 0; trial < 20; ++trial) {  // trees are refitted and rebuilt on the way
     stage.start = sum(stage.start, random_vectors(stage, random, 0.004f, false));
@@ -107,9 +113,10 @@ TEST(BroadPhase, CoversPredictedPathsAndTheThickness) {
   }
 }
 
-TEST(BroadPhase, CoversTheCandidateWhereverItGoes) {
+TEST_P(BroadPhaseMethods, CoverTheCandidateWhereverItGoes) {
   std::mt19937 random(2);
   Stage stage(two_sheets_and_a_ball());
+  stage.parameters.broad_phase_method = GetParam();
   BroadPhase broad_phase;
   StepContext step = stage.context();
   broad_phase.prepare(step);
@@ -120,6 +127,52 @@ TEST(BroadPhase, CoversTheCandidateWhereverItGoes) {
     expect_complete(broad_phase, stage, end, 0);
     expect_valid(broad_phase, stage);
   }
+}
+
+/// Keys of the pairs with a dirty vertex.
+std::vector<std::uint64_t> dirty_keys(const Stage& stage, const std::vector<std::uint64_t>& keys,
+                                      const std::vector<std::uint8_t>& dirty) {
+  std::vector<std::uint64_t> out;
+  for (const std::uint64_t key : keys) {
+    const Pair p = key_pair(key);
+    for (const Index v : corners(stage.world, key_is_edge_edge(key), p.a, p.b)) {
+      if (v >= stage.world.cloth_vertices || dirty[static_cast<std::size_t>(v)] == 0) continue;
+      out.push_back(key);
+      break;
+    }
+  }
+  return out;
+}
+
+TEST_P(BroadPhaseMethods, FindThePairsOfDirtyVertices) {
+  std::mt19937 random(4);
+  Stage stage(two_sheets_and_a_ball());
+  stage.parameters.broad_phase_method = GetParam();
+  StepContext step = stage.context();
+  BroadPhase broad_phase;
+  broad_phase.prepare(step);
+  std::vector<std::uint8_t> dirty(static_cast<std::size_t>(stage.world.cloth_vertices));
+  Array<std::uint8_t> flags;
+  for (const unsigned share : {2u, 10u, 100u, 1u}) {
+    std::vector<Vec3r> end = stage.start;
+    const auto moved = random_vectors(stage, random, 0.03f, false);
+    for (std::size_t i = 0; i < dirty.size(); ++i) {
+      dirty[i] = random() % share == 0 ? 1 : 0;
+      if (dirty[i] != 0) end[i] += moved[i];
+    }
+    stage.set_end(end);
+    flags.upload(dirty);
+    broad_phase.cover_dirty(step, flags.view());
+    const auto found = keys(broad_phase);
+    const auto needed = dirty_keys(stage, near_pairs(stage, end, 0), dirty);
+    EXPECT_GT(needed.size(), 10u);
+    EXPECT_TRUE(std::includes(found.begin(), found.end(), needed.begin(), needed.end())) << share;
+    EXPECT_EQ(dirty_keys(stage, found, dirty), found) << "pairs without a dirty vertex";
+    expect_valid(broad_phase, stage);
+  }
+  // The lists of dirty pairs are no longer complete: the next step makes them anew.
+  broad_phase.prepare(step);
+  expect_complete(broad_phase, stage, stage.start, stage.parameters.thickness);
 }
 
 TEST(BroadPhase, KeepsTheListsWhileTheMotionStaysInTheBoxes) {

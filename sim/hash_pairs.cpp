@@ -1,0 +1,373 @@
+#include "sim/hash_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+constexpr Index kMostCells = 64;     ///< of an element that is put into cells
+constexpr Index kTestsPerItem = 32;  ///< box tests that one thread does
+constexpr int kBits = 21;            ///< of one coordinate of a cell
+constexpr std::uint64_t kLast = (std::uint64_t{1} << kBits) - 1;
+
+struct Grid {
+  float origin[3];
+  float inverse_cell;
+
+  /// One function for all uses: the token needs the same rounding everywhere.
+  ICLOTH_HD std::uint64_t coordinate(float x, int axis) const {
+    const float scaled = (x - origin[axis]) * inverse_cell;
+    if (!(scaled > 0)) return 0;
+    return scaled >= static_cast<float>(kLast) ? kLast : static_cast<std::uint64_t>(scaled);
+  }
+};
+
+struct CellRange {
+  std::uint64_t low[3];
+  std::uint64_t count[3];
+};
+
+/// Elements of two kinds, the second numbered on from the first.
+struct TwoKinds {
+  View<const Box> first, second;
+  ICLOTH_HD const Box& operator[](Index i) const {
+    return i < first.size() ? first[i] : second[i - first.size()];
+  }
+  ICLOTH_HD Index size() const { return first.size() + second.size(); }
+};
+
+ICLOTH_HD CellRange cells_of(const Grid& grid, const Box& box) {
+  CellRange r;
+  for (int k = 0; k < 3; ++k) {
+    r.low[k] = grid.coordinate(box.lo[k], k);
+    r.count[k] = grid.coordinate(box.hi[k], k) - r.low[k] + 1;
+  }
+  return r;
+}
+
+ICLOTH_HD std::uint64_t cell_key(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return (x << (2 * kBits)) | (y << kBits) | z;
+}
+
+/// Cells of an element, 0 for a large one. Products of counts up to 2²¹ fit.
+ICLOTH_HD Index cell_count(const CellRange& r) {
+  const std::uint64_t count = r.count[0] * r.count[1] * r.count[2];
+  return count <= static_cast<std::uint64_t>(kMostCells) ? static_cast<Index>(count) : 0;
+}
+
+struct Extent {
+  Box bounds;
+  double length = 0;  ///< sum of the boxes' mean axes
+};
+struct ExtentOf {
+  TwoKinds box;
+  ICLOTH_HD Extent operator()(Index i) const {
+    const Box& b = box[i];
+    Extent e{b, 0};
+    for (int k = 0; k < 3; ++k) e.length += static_cast<double>(b.hi[k] - b.lo[k]) / 3;
+    return e;
+  }
+};
+struct UniteExtents {
+  ICLOTH_HD Extent operator()(Extent a, const Extent& b) const {
+    include(a.bounds, b.bounds);
+    a.length += b.length;
+    return a;
+  }
+};
+
+struct CountCells {
+  TwoKinds box;
+  Grid grid;
+  View<Index> count;
+  ICLOTH_HD void operator()(Index i) const { count[i] = cell_count(cells_of(grid, box[i])); }
+};
+
+struct IsLarge {
+  TwoKinds box;
+  Grid grid;
+  ICLOTH_HD bool operator()(Index i) const { return cell_count(cells_of(grid, box[i])) == 0; }
+};
+
+struct WriteCells {
+  TwoKinds box;
+  Grid grid;
+  View<const Index> offset;
+  View<std::uint64_t> key;
+  View<Index> element;
+  ICLOTH_HD void operator()(Index i) const {
+    const CellRange r = cells_of(grid, box[i]);
+    if (cell_count(r) == 0) return;
+    Index at = offset[i];
+    for (std::uint64_t x = 0; x < r.count[0]; ++x)
+      for (std::uint64_t y = 0; y < r.count[1]; ++y)
+        for (std::uint64_t z = 0; z < r.count[2]; ++z) {
+          key[at] = cell_key(r.low[0] + x, r.low[1] + y, r.low[2] + z);
+          element[at++] = i;
+        }
+  }
+};
+
+struct StartsCell {
+  View<const std::uint64_t> key;
+  ICLOTH_HD bool operator()(Index i) const { return i == 0 || key[i] != key[i - 1]; }
+};
+
+struct SetEnd {
+  View<Index> list;
+  Index value;
+  ICLOTH_HD void operator()(Index) const { list[list.size() - 1] = value; }
+};
+
+ICLOTH_HD bool overlap(const Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k)
+    if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return false;
+  return true;
+}
+
+/// Range of entries and how many of them are below an element number (entries ascend).
+struct CellView {
+  View<const Index> element;
+  Index first, last;
+  ICLOTH_HD Index below(Index limit) const {
+    Index low = first, high = last;
+    while (low < high) {
+      const Index middle = low + (high - low) / 2;
+      if (element[middle] < limit)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low - first;
+  }
+};
+
+/// Pairs of edges: cloth edges with all later ones.
+struct EdgePairs {
+  TwoKinds box;
+  View<const Int2> edge;
+  Index cloth;
+
+  struct Cell {
+    std::int64_t cloth, all;
+  };
+  ICLOTH_HD Cell cell(const CellView& c) const { return {c.below(cloth), c.last - c.first}; }
+  ICLOTH_HD std::int64_t tests(const Cell& c) const {
+    return c.cloth * (c.cloth - 1) / 2 + c.cloth * (c.all - c.cloth);
+  }
+  /// Test t of a cell as two places in it: row a has the places after a, so that rows 0 … a − 1
+  /// hold a (2 all − a − 1) / 2 tests.
+  ICLOTH_HD void decode(const Cell& c, std::int64_t t, Index& a, Index& b) const {
+    const auto before = [&](std::int64_t row) { return row * (2 * c.all - row - 1) / 2; };
+    const double n = static_cast<double>(c.all) - 0.5;
+    auto row = static_cast<std::int64_t>(
+        n - std::sqrt(std::fmax(n * n - 2.0 * static_cast<double>(t), 0.0)));
+    row = row < 0 ? 0 : row;
+    while (before(row) > t) --row;
+    while (before(row + 1) <= t) ++row;
+    a = static_cast<Index>(row);
+    b = static_cast<Index>(row + 1 + t - before(row));
+  }
+  ICLOTH_HD bool allowed(Index a, Index b) const {
+    return a < cloth && !share_vertex(edge[a], edge[b]);
+  }
+  ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b}; }
+};
+
+/// Pairs of a vertex and a face, numbered on: vertices first.
+struct VertexFacePairs {
+  TwoKinds box;
+  View<const Int3> face;
+  Index cloth_vertices, vertices, cloth_faces;
+
+  struct Cell {
+    std::int64_t vertices, faces;
+  };
+  ICLOTH_HD Cell cell(const CellView& c) const {
+    const Index v = c.below(vertices);
+    return {v, c.last - c.first - v};
+  }
+  ICLOTH_HD std::int64_t tests(const Cell& c) const { return c.vertices * c.faces; }
+  ICLOTH_HD void decode(const Cell& c, std::int64_t t, Index& a, Index& b) const {
+    a = static_cast<Index>(t / c.faces);
+    b = static_cast<Index>(c.vertices + t % c.faces);
+  }
+  ICLOTH_HD bool allowed(Index a, Index b) const {
+    if (a >= vertices || b < vertices) return false;
+    const Index f = b - vertices;
+    return (a < cloth_vertices || f < cloth_faces) && !has_vertex(face[f], a);
+  }
+  ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b - vertices}; }
+};
+
+/// Work items of each cell.
+template <class Pairs>
+struct CountItems {
+  Pairs pairs;
+  View<const Index> cell_first, element;
+  View<Index> count;
+  ICLOTH_HD void operator()(Index c) const {
+    const std::int64_t tests = pairs.tests(pairs.cell({element, cell_first[c], cell_first[c + 1]}));
+    count[c] = static_cast<Index>((tests + kTestsPerItem - 1) / kTestsPerItem);
+  }
+};
+
+template <class Pairs>
+struct TestItem {
+  Pairs pairs;
+  Grid grid;
+  View<const std::uint64_t> key;
+  View<const Index> cell_first, element, item_first;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index item, Emit& emit) const {
+    Index low = 0, high = item_first.size() - 1;  // the last cell that starts at or before item
+    while (high - low > 1) {
+      const Index middle = low + (high - low) / 2;
+      (item_first[middle] <= item ? low : high) = middle;
+    }
+    const Index first = cell_first[low];
+    const auto cell = pairs.cell({element, first, cell_first[low + 1]});
+    const std::int64_t begin = static_cast<std::int64_t>(item - item_first[low]) * kTestsPerItem;
+    const std::int64_t all = pairs.tests(cell);
+    const std::int64_t end = begin + kTestsPerItem < all ? begin + kTestsPerItem : all;
+    for (std::int64_t t = begin; t < end; ++t) {
+      Index a = 0, b = 0;
+      pairs.decode(cell, t, a, b);
+      test(element[first + a], element[first + b], key[first], emit);
+    }
+  }
+
+  template <class Emit>
+  ICLOTH_HD void test(Index a, Index b, std::uint64_t here, Emit& emit) const {
+    const Box &p = pairs.box[a], &q = pairs.box[b];
+    if (!overlap(p, q)) return;
+    std::uint64_t token[3];
+    for (int k = 0; k < 3; ++k)
+      token[k] = grid.coordinate(p.lo[k] > q.lo[k] ? p.lo[k] : q.lo[k], k);
+    if (cell_key(token[0], token[1], token[2]) == here && pairs.allowed(a, b))
+      emit(pairs.pair(a, b));
+  }
+};
+
+/// A large element against all; pairs of two large ones are found from the first.
+template <class Pairs>
+struct TestLarge {
+  Pairs pairs;
+  Grid grid;
+  View<const Index> large;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index other, Emit& emit) const {
+    const Box& box = pairs.box[other];
+    const bool other_large = cell_count(cells_of(grid, box)) == 0;
+    for (Index k = 0; k < large.size(); ++k) {
+      const Index l = large[k];
+      if (l == other || (other_large && l < other) || !overlap(pairs.box[l], box)) continue;
+      const Index a = l < other ? l : other, b = l < other ? other : l;
+      if (pairs.allowed(a, b)) emit(pairs.pair(a, b));
+    }
+  }
+};
+
+template <class Dirty>
+struct IsDirtyPair {
+  View<const Pair> pair;
+  Dirty dirty;
+  ICLOTH_HD bool operator()(Index i) const { return dirty(pair[i]); }
+};
+struct DirtyVertexFace {
+  DirtyVertices vertex;
+  DirtyFaces face;
+  ICLOTH_HD bool operator()(Pair p) const { return vertex(p.a) || face(p.b); }
+};
+struct DirtyEdgeEdge {
+  DirtyEdges edge;
+  ICLOTH_HD bool operator()(Pair p) const { return edge(p.a) || edge(p.b); }
+};
+
+struct PickPairs {
+  View<const Pair> from;
+  View<const Index> picked;
+  View<Pair> to;
+  ICLOTH_HD void operator()(Index i) const { to[i] = from[picked[i]]; }
+};
+
+Grid make_grid(const TwoKinds& box) {
+  const Extent e =
+      reduce("broad_phase.extent", box.size(), Extent{}, ExtentOf{box}, UniteExtents{});
+  // 1.5 mean extents: smaller cells hold more copies, larger ones more tests.
+  double cell = 1.5 * e.length / std::max<double>(1, box.size());
+  for (int k = 0; k < 3; ++k)
+    cell = std::max(cell, static_cast<double>(e.bounds.hi[k] - e.bounds.lo[k]) / (kLast - 1.0));
+  Grid grid{{e.bounds.lo[0], e.bounds.lo[1], e.bounds.lo[2]}, 0};
+  grid.inverse_cell = cell > 0 ? static_cast<float>(1 / cell) : 0;
+  return grid;
+}
+
+}  // namespace
+
+template <class Pairs>
+void HashPairs::run(const char* name, const Pairs& pairs, Array<Pair>& list, Candidates& out) {
+  const Index n = pairs.box.size();
+  const Grid grid = make_grid(pairs.box);
+  offset_.resize(n + 1);
+  for_each("broad_phase.cells", n, CountCells{pairs.box, grid, offset_.view().sub(0, n)});
+  compact("broad_phase.large", n, IsLarge{pairs.box, grid}, large_);
+  const Index entries =
+      exclusive_scan("broad_phase.cells", offset_.view().sub(0, n), offset_.view());
+  key_.resize(entries);
+  element_.resize(entries);
+  for_each("broad_phase.cells", n,
+           WriteCells{pairs.box, grid, offset_.view(), key_.view(), element_.view()});
+  sort_by_key("broad_phase.sort", key_.view(), element_.view(), 3 * kBits);
+  const Index cells = compact("broad_phase.cells", entries, StartsCell{key_.view()}, cell_first_);
+  cell_first_.resize_keep(cells + 1);
+  for_each("broad_phase.cells", 1, SetEnd{cell_first_.view(), entries});
+
+  offset_.resize(cells + 1);
+  for_each("broad_phase.work", cells,
+           CountItems<Pairs>{pairs, cell_first_.view(), element_.view(), offset_.view()});
+  const Index items =
+      exclusive_scan("broad_phase.work", offset_.view().sub(0, cells), offset_.view());
+  collect(name, items,
+          TestItem<Pairs>{pairs, grid, key_.view(), cell_first_.view(), element_.view(),
+                          offset_.view()},
+          list);
+  out.box_tests += std::int64_t{items} * kTestsPerItem;
+  if (large_.empty()) return;
+  collect(name, n, TestLarge<Pairs>{pairs, grid, large_.view()}, found_);
+  out.box_tests += std::int64_t{large_.size()} * n;
+  append_pairs(found_, list);
+}
+
+void HashPairs::find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out) {
+  run("broad_phase.vertex_face",
+      VertexFacePairs{{boxes.vertex, boxes.face},
+                      mesh.face.view(),
+                      mesh.cloth_vertices,
+                      mesh.vertices,
+                      mesh.cloth_faces},
+      out.vertex_faces, out);
+  run("broad_phase.edge_edge", EdgePairs{{boxes.edge, {}}, mesh.edge.view(), mesh.cloth_edges},
+      out.edge_edges, out);
+}
+
+void HashPairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
+                           View<const std::uint8_t> dirty, Candidates& out) {
+  find(mesh, boxes, out);
+  const DirtyVertices vertex{dirty};
+  const auto keep = [&](Array<Pair>& list, const auto& is_dirty) {
+    const Index count = compact("broad_phase.dirty", list.size(), is_dirty, large_);
+    found_.resize(count);
+    for_each("broad_phase.dirty", count, PickPairs{list.view(), large_.view(), found_.view()});
+    swap(list, found_);
+  };
+  keep(out.vertex_faces,
+       IsDirtyPair<DirtyVertexFace>{out.vertex_faces.view(), {vertex, {vertex, mesh.face.view()}}});
+  keep(out.edge_edges,
+       IsDirtyPair<DirtyEdgeEdge>{out.edge_edges.view(), {{vertex, mesh.edge.view()}}});
+}
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,35 @@
+// Candidate pairs by spatial hashing, the broad phase of the paper's family (Section 3; Tang et al.
+// 2018, "PSCC"): a uniform grid, sorted cells, and the tests of all cells dealt out evenly.
+//
+// Deviations: cells hold vertices, edges and faces instead of triangles, so that no triangle has to
+// be made responsible for a pair of features; keys are the cell's three coordinates (21 bits each),
+// so that no two cells ever share one; elements over more than 64 cells are kept apart and tested
+// against all others. A pair is reported by the cell that holds the lower corner of the overlap of
+// its two boxes (the token; Fan et al. 2011), hence once.
+#pragma once
+
+#include "sim/candidates.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class HashPairs {
+ public:
+  /// All pairs whose boxes overlap.
+  void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
+  /// Those of them that have a dirty vertex: finds all and drops the others.
+  void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
+                  Candidates& out);
+
+ private:
+  template <class Pairs>
+  void run(const char* name, const Pairs& pairs, Array<Pair>& list, Candidates& out);
+
+  Array<std::uint64_t> key_;  ///< cell of each entry, sorted
+  Array<Index> element_;      ///< of each entry
+  Array<Index> offset_;       ///< first entry of each element, then first work item of each cell
+  Array<Index> cell_first_;   ///< first entry of each cell, and the end
+  Array<Index> large_;        ///< elements that are in no cell
+  Array<Pair> found_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,121 @@
+#include "sim/tree.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+struct UniteBoxes {
+  ICLOTH_HD Box operator()(Box a, const Box& b) const {
+    include(a, b);
+    return a;
+  }
+};
+
+/// Places of the items of a tree: a list, or the range from `first` on.
+struct Items {
+  View<const Index> list;
+  Index first;
+  ICLOTH_HD Index operator[](Index i) const { return list.data() == nullptr ? first + i : list[i]; }
+};
+
+struct BoxAt {
+  View<const Box> box;
+  Items items;
+  ICLOTH_HD Box operator()(Index i) const { return box[items[i]]; }
+};
+
+struct MortonCodes {
+  View<const Box> box;
+  Items items;
+  View<std::uint64_t> code;
+  View<Index> item;
+  Box bounds;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Box& b = box[items[i]];
+    float p[3];
+    for (int k = 0; k < 3; ++k) {
+      const float extent = bounds.hi[k] - bounds.lo[k];
+      p[k] = extent > 0 ? (0.5f * (b.lo[k] + b.hi[k]) - bounds.lo[k]) / extent : 0.0f;
+    }
+    code[i] = morton_code(p[0], p[1], p[2]);
+    item[i] = items[i];
+  }
+};
+
+struct FitLeaves {
+  View<const Box> box;
+  View<const Index> item;
+  View<TreeNode> node;
+
+  ICLOTH_HD void operator()(Index n) const {
+    for (int c = 0; c < kTreeWidth; ++c) {
+      const Index leaf = n * kTreeWidth + c;
+      set_child(node[n], c, leaf < item.size() ? box[item[leaf]] : Box{});
+    }
+  }
+};
+
+struct FitLevel {
+  View<TreeNode> node;
+  Index below, below_count, level;
+
+  ICLOTH_HD void operator()(Index n) const {
+    for (int c = 0; c < kTreeWidth; ++c) {
+      const Index child = n * kTreeWidth + c;
+      Box b;
+      if (child < below_count)
+        for (int k = 0; k < kTreeWidth; ++k) include(b, child_box(node[below + child], k));
+      set_child(node[level + n], c, b);
+    }
+  }
+};
+
+}  // namespace
+
+TreeView Tree::view() const {
+  TreeView t;
+  t.nodes = nodes_.view();
+  t.items = items_.view();
+  t.levels = levels_;
+  for (int l = 0; l < levels_; ++l) t.level_first[l] = level_first_[l];
+  return t;
+}
+
+void Tree::build(View<const Box> boxes, Index first) {
+  sort(boxes, Items{{}, first}, boxes.size() - first);
+}
+
+void Tree::build(View<const Box> boxes, View<const Index> elements) {
+  sort(boxes, Items{elements, 0}, elements.size());
+}
+
+template <class Items>
+void Tree::sort(View<const Box> boxes, const Items& items, Index n) {
+  items_.resize(n);
+  levels_ = 0;
+  if (n == 0) return;
+  codes_.resize(n);
+  const Box bounds = reduce("broad_phase.bounds", n, Box{}, BoxAt{boxes, items}, UniteBoxes{});
+  for_each("broad_phase.morton", n,
+           MortonCodes{boxes, items, codes_.view(), items_.view(), bounds});
+  sort_by_key("broad_phase.sort", codes_.view(), items_.view(), 30);
+  Index total = 0;
+  for (Index count = n; levels_ == 0 || count > 1;) {
+    count = (count + kTreeWidth - 1) / kTreeWidth;
+    level_first_[levels_] = total;
+    level_count_[levels_++] = count;
+    total += count;
+  }
+  nodes_.resize(total);
+  refit(boxes);
+}
+
+void Tree::refit(View<const Box> boxes) {
+  if (levels_ == 0) return;
+  for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, items_.view(), nodes_.view()});
+  for (int l = 1; l < levels_; ++l)
+    for_each("broad_phase.refit", level_count_[l],
+             FitLevel{nodes_.view(), level_first_[l - 1], level_count_[l - 1], level_first_[l]});
+}
+
+}  // namespace icloth::ICLOTH_BUILD

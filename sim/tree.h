@@ -1,0 +1,33 @@
+// Bounding volume tree over boxes of elements (kernels/bvh.h).
+#pragma once
+
+#include "kernels/bvh.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class Tree {
+ public:
+  /// Over the elements first, first + 1 … boxes.size() − 1, sorted anew (Morton order of their
+  /// boxes' centres).
+  void build(View<const Box> boxes, Index first);
+  /// Over the listed elements alone.
+  void build(View<const Box> boxes, View<const Index> elements);
+  /// New boxes, old order.
+  void refit(View<const Box> boxes);
+  bool empty() const { return items_.size() == 0; }
+  TreeView view() const;
+
+ private:
+  template <class Items>
+  void sort(View<const Box> boxes, const Items& items, Index count);
+
+  Array<Index> items_;  ///< element numbers in leaf order
+  Array<TreeNode> nodes_;
+  Array<std::uint64_t> codes_;
+  Index level_first_[kTreeLevels] = {};
+  Index level_count_[kTreeLevels] = {};
+  int levels_ = 0;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

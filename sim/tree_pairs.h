@@ -1,0 +1,33 @@
+// Candidate pairs by bounding volume trees: vertices against faces, edges against edges.
+#pragma once
+
+#include "sim/candidates.h"
+#include "sim/tree.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class TreePairs {
+ public:
+  /// New boxes; `rebuild`: the order of the leaves is made anew as well.
+  void update(const Topology& mesh, const ElementBoxes& boxes, bool rebuild);
+
+  /// All pairs whose boxes overlap.
+  void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
+  /// Those of them that have a dirty vertex. `dirty`: 1 or 0 (cloth_vertices).
+  void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
+                  Candidates& out);
+
+  /// Counts the boxes that the queries compare with, which takes about as long as they do.
+  bool count_tests = false;
+
+ private:
+  template <class Query>
+  void run(const char* name, Index count, const Query& query, Array<Pair>& list, Candidates& out);
+
+  Tree cloth_faces_, obstacle_faces_, cloth_edges_, obstacle_edges_;
+  Tree dirty_face_tree_;
+  Array<Index> dirty_vertices_, dirty_faces_, dirty_edges_;
+  Array<Pair> found_;  ///< one query's results
+};
+
+}  // namespace icloth::ICLOTH_BUILD
