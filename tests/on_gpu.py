@@ -202,15 +202,22 @@ def report_picture(found):
 
 # ---- the report
 
+def commit_of_tree():
+    try:
+        git = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty", "--abbrev=12",
+                              "--exclude=*"], capture_output=True, text=True, check=True)
+        return git.stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
 def describe(found, device_text):
     words = device_text.split(" ", 2) if device_text else ["", "", ""]
     info, configure = found.text("info.log"), found.text("configure.log")
     commit = re.search(r"(?m)^icloth +\S+ \((.*)\)", info)
     toolkit = re.search(r"CUDA compiler identification is NVIDIA (\S+)", configure)
     compiler = re.search(r"CXX compiler identification is (.*)", configure)
-    commit = commit[1] if commit else os.environ.get("ICLOTH_COMMIT") or subprocess.run(
-        ["git", "-C", ROOT, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
-        capture_output=True, text=True, check=False).stdout.strip() or "unknown"
+    commit = commit[1] if commit else os.environ.get("ICLOTH_COMMIT") or commit_of_tree()
     return {"device": words[2], "compute_capability": f"{words[0][:-1]}.{words[0][-1:]}" if words[0] else "",
             "driver": words[1], "cuda": toolkit[1] if toolkit else "", "commit": commit,
             "compiler": compiler[1] if compiler else "", "cores": os.cpu_count(),
