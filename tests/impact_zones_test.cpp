@@ -261,7 +261,7 @@ TEST_P(ImpactZoneSolvers, LeaveNothingToAFullDetection) {
       for (const Impact& impact : full.impacts().download()) full_keys.push_back(impact.key);
       EXPECT_EQ(incremental_keys, full_keys) << "round " << round;
     }
-    EXPECT_GT(round, 1);
+    EXPECT_GE(round, 1);
   }
 }
 
