@@ -1,9 +1,9 @@
 #include "sim/input.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
-#include <cstdlib>
 
 #include "sim/error.h"
 #include "sim/file_io.h"
@@ -80,9 +80,10 @@ Recording::Step step_from(const JsonValue& value) {
 
 std::uint64_t hash_from(const JsonValue& value) {
   const std::string& text = value.text();
-  char* end = nullptr;
-  const std::uint64_t hash = std::strtoull(text.c_str(), &end, 16);
-  if (text.size() != 16 || end != text.c_str() + text.size()) value.refuse("16 hex digits");
+  std::uint64_t hash = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, hash, 16);
+  if (text.size() != 16 || error != std::errc{} || rest != end) value.refuse("16 hex digits");
   return hash;
 }
 

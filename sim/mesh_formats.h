@@ -18,7 +18,8 @@ MeshFile parse_ply(std::string_view bytes, const std::string& path);
 PointCache parse_pc2(std::string_view bytes, const std::string& path, Index vertices);
 PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vertices);
 
-inline constexpr double kLargestCoordinate = 1e9;  ///< of a position in any file [m]
+inline constexpr double kLargestCoordinate = 1e9;          ///< of a position in any file [m]
+inline constexpr std::size_t kLargestCount = 536'870'911;  ///< of vertices or triangles
 
 /// Throws InputError naming the first vertex of the frame that is not within kLargestCoordinate.
 void check_frame(std::span<const Vec3f> frame, std::size_t number, const std::string& path);

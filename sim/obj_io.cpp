@@ -2,7 +2,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "sim/error.h"
 #include "sim/mesh_formats.h"
@@ -68,7 +67,7 @@ class ObjParser {
     Vec3d p;
     for (double* x : {&p.x, &p.y, &p.z})
       *x = number(element, words.next(), "three finite coordinates");
-    if (file_.mesh.positions.size() >= std::numeric_limits<Index>::max() / 4)
+    if (file_.mesh.positions.size() >= kLargestCount)
       refuse(element, "one more", "at most 536870911 vertices");
     file_.mesh.positions.push_back(p);
   }
@@ -121,6 +120,8 @@ class ObjParser {
 
   void add_triangle(const std::array<Corner, 3>& corners) {
     TriangleMesh& mesh = file_.mesh;
+    if (mesh.faces.size() >= kLargestCount)
+      refuse("face " + std::to_string(faces_), "one more", "at most 536870911 triangles");
     mesh.faces.push_back({corners[0].vertex, corners[1].vertex, corners[2].vertex});
     for (const Corner& c : corners) all_have_uv_ = all_have_uv_ && c.uv != kNone;
     if (!all_have_uv_) return;

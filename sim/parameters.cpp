@@ -197,6 +197,8 @@ bool parse_value(std::string_view text, const ParameterInfo& info, double& value
   return error == std::errc{} && rest == end;
 }
 
+constexpr std::size_t kLongestName = 64;
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -295,6 +297,7 @@ std::string dump_parameters(const Parameters& parameters) {
 }
 
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
+  word = word.substr(0, kLongestName);  // it may come from a file
   std::string_view best;
   std::size_t smallest = 0;
   for (std::string_view candidate : candidates) {

@@ -113,8 +113,7 @@ class PlyParser {
     const std::string_view count = words.next();
     const auto [end, error] =
         std::from_chars(count.data(), count.data() + count.size(), element.count);
-    if (error != std::errc{} || end != count.data() + count.size() ||
-        element.count > std::numeric_limits<Index>::max() / 4)
+    if (error != std::errc{} || end != count.data() + count.size() || element.count > kLargestCount)
       refuse("element " + element.name, count, "a count from 0 to 536870911");
     elements_.push_back(element);
   }
@@ -244,6 +243,8 @@ class PlyParser {
         refuse(where, std::to_string(value), "the number of a vertex");
       fan[std::min<std::size_t>(k, 2)] = static_cast<Index>(value);
       if (k < 2) continue;
+      if (file_.mesh.faces.size() >= kLargestCount)
+        refuse(where, "one more", "at most 536870911 triangles");
       file_.mesh.faces.push_back(fan);
       fan[1] = fan[2];
     }

@@ -90,37 +90,36 @@ void place_cloth(JsonObject& object, LoadedCloth& loaded) {
     cloth.mesh.uv.clear();
 }
 
-void pin_box(const JsonValue& value, Cloth& cloth) {
+void pin_box(const JsonValue& value, const Cloth& cloth, std::vector<bool>& pinned) {
   const std::vector<JsonValue> corners = value.items();
   if (corners.size() != 2) value.refuse("two corners: [[x, y, z], [x, y, z]]");
   const Vec3d low = corners[0].vector(), high = corners[1].vector();
-  const std::size_t before = cloth.pins.size();
+  bool found = false;
   for (std::size_t v = 0; v < cloth.mesh.positions.size(); ++v) {
     const Vec3d p = cloth.mesh.positions[v];
     const bool inside = p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y &&
                         p.z >= low.z && p.z <= high.z;
-    if (inside) cloth.pins.push_back(static_cast<Index>(v));
+    if (inside) found = pinned[v] = true;
   }
-  if (cloth.pins.size() == before)
-    value.refuse("a box with at least one vertex of the cloth in it");
+  if (!found) value.refuse("a box with at least one vertex of the cloth in it");
 }
 
 void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
-  std::vector<Index>& pins = loaded.cloth.pins;
+  std::vector<bool> pinned(loaded.cloth.mesh.positions.size());  // each once, however often named
   for (const JsonValue& item : value.items()) {
     if (item.json().is_object()) {
       JsonObject object(item);
-      pin_box(object.required("box"), loaded.cloth);
+      pin_box(object.required("box"), loaded.cloth, pinned);
       object.finish();
       continue;
     }
     std::vector<Index> named;
     if (item.json().is_string() && loaded.grid) named = grid_vertices(*loaded.grid, item.text());
     if (named.empty()) named = {parse_vertex(item, loaded)};
-    pins.insert(pins.end(), named.begin(), named.end());
+    for (Index v : named) pinned[static_cast<std::size_t>(v)] = true;
   }
-  std::ranges::sort(pins);
-  pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
+  for (std::size_t v = 0; v < pinned.size(); ++v)
+    if (pinned[v]) loaded.cloth.pins.push_back(static_cast<Index>(v));
 }
 
 }  // namespace
@@ -133,7 +132,7 @@ double total_grid_triangles(const nlohmann::json& scene) {
                          cloth["mesh"].contains("grid");
     if (!is_grid) continue;
     const bool chosen = cloth.contains("triangles") && cloth["triangles"].is_number();
-    total += chosen ? cloth["triangles"].get<double>() : kDefaultTriangles;
+    total += chosen ? std::max(cloth["triangles"].get<double>(), 0.0) : kDefaultTriangles;
   }
   return total;
 }

@@ -10,7 +10,9 @@
 namespace icloth {
 namespace {
 
-constexpr double kSmoothInterval = 0.02;  ///< of a smooth path's points [s]
+constexpr double kSmoothInterval = 0.02;  ///< of a smooth path's points [s] …
+constexpr double kMaxPieces = 1000;       ///< … but where a piece of the path takes very long
+constexpr double kMinInterval = 1e-6;     ///< of the points in the file: speeds must be finite [s]
 constexpr double kMaxTime = 1e5;          ///< [s]
 const NumberRange kTime{0, kMaxTime};
 
@@ -61,7 +63,7 @@ std::vector<PathPoint> smoothed(const std::vector<PathPoint>& path) {
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double length = path[i + 1].time - path[i].time;
     const auto pieces =
-        std::max<std::size_t>(1, static_cast<std::size_t>(length / kSmoothInterval));
+        static_cast<std::size_t>(std::clamp(length / kSmoothInterval, 1.0, kMaxPieces));
     for (std::size_t k = 0; k < pieces; ++k) {
       const double time =
           path[i].time + length * static_cast<double>(k) / static_cast<double>(pieces);
@@ -77,7 +79,7 @@ std::vector<PathPoint> parse_path(const JsonValue& value) {
   for (const JsonValue& item : value.items()) {
     const std::vector<double> numbers = item.numbers(4);
     if (numbers[0] < 0 || numbers[0] > kMaxTime ||
-        (!path.empty() && numbers[0] <= path.back().time))
+        (!path.empty() && numbers[0] < path.back().time + kMinInterval))
       item.refuse("[time, x, y, z] with a time after the one before");
     path.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}});
   }

@@ -41,11 +41,14 @@ TriangleMesh parse_funnel(const JsonValue& value, Index most_triangles) {
   shape.wall = object.number("wall", shape.wall, kSize);
   shape.edge = object.number("edge", shape.edge, kSize);
   object.finish();
-  const double outline = 2 * (shape.top_radius + shape.cone_height + shape.pipe_length);
-  const double around =
-      std::max(std::numbers::pi * (shape.top_radius + shape.bottom_radius), 6 * shape.edge);
-  if (outline * around / (shape.edge * shape.edge) > most_triangles / 2)
-    refuse_cells(value, most_triangles);
+  // Both sides of the cone and of the pipe, and the two rims; each of these pieces and each ring is
+  // rounded to whole edges, a ring to six at least.
+  const double slope = std::hypot(shape.top_radius - shape.bottom_radius, shape.cone_height);
+  const double outline = 2 * (slope + shape.pipe_length + shape.wall);
+  const double widest = std::max(shape.top_radius, shape.bottom_radius) + shape.wall;
+  const double rings = 1.2 * outline / shape.edge + 6;
+  const double around = 2 * std::numbers::pi * widest / shape.edge + 6;
+  if (2 * rings * around > most_triangles) refuse_cells(value, most_triangles);
   return make_funnel(shape);
 }
 
