@@ -2,13 +2,13 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/paper.h"
+#include "app/bench/stability.h"
+#include "app/bench/suite.h"
 #include "app/headless.h"
 #include "app/machine.h"
-#include "app/options.h"
-#include "kernels/device_problem.h"
 #include "sim/cuda_devices.h"
 #include "sim/error.h"
 #include "sim/file_io.h"
@@ -32,44 +32,6 @@ const std::vector<BenchCase>& quick_suite() {
       {"sphere, 200K triangles", "sphere", {"triangles=200000"}, 40},
   };
   return cases;
-}
-
-/// The CPU and the usable CUDA device, or the one that was asked for.
-std::vector<Build> chosen_builds(const std::string& device) {
-  SimulationOptions where;
-  where.device = device;
-  const Build build = choose_build(where);
-  if (device.empty() && build != Build::cpu32) return {Build::cpu32, build};
-  return {build};
-}
-
-Json describe_cuda() {
-  Json json;
-  const CudaSystem system = cuda_system();
-  for (const CudaDevice& device : system.devices) {
-    if (device.ordinal != cuda_device()) continue;
-    json["device"] = device.name;
-    json["compute_capability"] = capability_text(device.capability);
-    json["memory_bytes"] = device.memory;
-    json["multiprocessors"] = device.multiprocessors;
-    json["l2_cache_bytes"] = device.l2_cache;
-    json["driver_version"] = cuda_version_text(system.driver);
-    json["runtime_version"] = cuda_version_text(system.runtime);
-    json["copy_bandwidth"] = compute_device(Build::cuda32).copy_bandwidth;
-  }
-  return json;
-}
-
-Json describe_machine(int threads) {
-  Json json;
-  json["version"] = program_version();
-  json["commit"] = program_commit();
-  json["compiler"] = compiler_name();
-  json["processor"] = processor_name();
-  json["threads"] = threads > 0 ? threads : processor_threads();
-  json["memory_bytes"] = memory_bytes();
-  json["memory_bandwidth"] = measure_memory_bandwidth();
-  return json;
 }
 
 Json describe(const BenchCase& test, Build build, const Scene& scene,
@@ -111,21 +73,14 @@ void print_row(const Json& row) {
   std::fflush(stdout);
 }
 
-}  // namespace
-
-int run_bench(const BenchOptions& options) {
-  if (options.suite != "quick")
-    throw InputError("bench: suite '" + options.suite + "', expected quick");
-  std::error_code error;
-  if (!options.out.empty()) std::filesystem::create_directories(options.out, error);
-  if (error) throw InputError("--out " + options.out + ": " + error.message());
+int run_quick(const BenchOptions& options) {
+  make_output_folder(options.out);
   set_thread_count(options.threads);
   const std::vector<Build> builds = chosen_builds(options.device);
 
   Json results;
   results["suite"] = options.suite;
-  results["machine"] = describe_machine(options.threads);
-  if (builds.back() == Build::cuda32) results["machine"]["cuda"] = describe_cuda();
+  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
   std::printf("%s, %d threads, %.1f GB/s, %s, commit %s\n", processor_name().c_str(),
               results["machine"]["threads"].get<int>(),
               results["machine"]["memory_bandwidth"].get<double>() / 1e9, compiler_name().c_str(),
@@ -155,6 +110,15 @@ int run_bench(const BenchOptions& options) {
   }
   if (!options.out.empty()) write_file(options.out + "/results.json", results.dump(1) + "\n");
   return clean ? 0 : 1;
+}
+
+}  // namespace
+
+int run_bench(const BenchOptions& options) {
+  if (options.suite == "quick") return run_quick(options);
+  if (options.suite == "paper") return run_paper(options);
+  if (options.suite == "stability") return run_stability(options);
+  throw InputError("bench: suite '" + options.suite + "', expected quick, paper or stability");
 }
 
 }  // namespace icloth

@@ -1,0 +1,32 @@
+#include "app/bench/frames.h"
+
+#include "app/headless.h"
+#include "app/progress.h"
+#include "sim/scene_io.h"
+
+namespace icloth {
+
+Frames::Frames(Build build, const std::string& scene, const std::vector<std::string>& overrides,
+               long first, long last, long every)
+    : simulator_(make_simulator(build, load_scene(scene, overrides))),
+      own_(simulator_->parameters()) {
+  Progress progress(scene, last, false);
+  for (long step = 0; step < last; ++step) {
+    if (step >= first && (step - first) % every == 0) states_.push_back(simulator_->snapshot());
+    reports_.push_back(simulator_->step({}));
+    progress.update(step + 1);
+  }
+  progress.finish();
+}
+
+StepReport Frames::step(const Snapshot& state, const std::function<void(Parameters&)>& change) {
+  simulator_->restore(state);
+  Parameters parameters = own_;
+  change(parameters);
+  simulator_->set_parameters(parameters);
+  return simulator_->step({});
+}
+
+std::size_t Frames::penetrations() const { return count_penetrations(*simulator_); }
+
+}  // namespace icloth

@@ -1,0 +1,36 @@
+// States of a run from which single steps are taken again with other settings.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/simulator.h"
+
+namespace icloth {
+
+/// A scene without scripted hands, run with its own parameters; some of its states are kept.
+class Frames {
+ public:
+  /// Keeps the state before every `every`-th step from `first` to `last`.
+  Frames(Build build, const std::string& scene, const std::vector<std::string>& overrides,
+         long first, long last, long every);
+
+  const std::vector<Snapshot>& states() const { return states_; }
+  /// Reports of all steps of the run.
+  const std::vector<StepReport>& reports() const { return reports_; }
+
+  /// One step from a kept state with changed parameters.
+  StepReport step(const Snapshot& state, const std::function<void(Parameters&)>& change);
+  /// Pairs of faces that intersect in the state after the last step.
+  std::size_t penetrations() const;
+
+ private:
+  std::unique_ptr<Simulator> simulator_;
+  Parameters own_;
+  std::vector<Snapshot> states_;
+  std::vector<StepReport> reports_;
+};
+
+}  // namespace icloth

@@ -1,0 +1,91 @@
+#include "app/bench/stability.h"
+
+#include <cstdio>
+
+#include "app/bench/suite.h"
+#include "app/machine.h"
+#include "app/stability/case_run.h"
+#include "sim/error.h"
+#include "sim/file_io.h"
+
+namespace icloth {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using stability::Case;
+using stability::CaseResult;
+
+void print_head() {
+  std::printf("%-21s %-6s %6s %8s %7s %7s %8s %9s %8s %7s %6s %5s %4s %6s  %s\n", "case", "build",
+              "steps", "substeps", "retries", "rounds", "impacts", "violation", "strain", "refused",
+              "states", "penet", "NaN", "s", "verdict");
+}
+
+void print_row(const Case& test, Build build, const CaseResult& r) {
+  const auto number = [](std::int64_t n) { return static_cast<long long>(n); };
+  std::printf(
+      "%-21s %-6s %6lld %8lld %7lld %7lld %8lld %9.1e %8.3f %7lld %6lld %5lld %4s %6.1f  %s\n",
+      test.name, std::string(build_name(build)).c_str(), number(r.steps), number(r.substeps),
+      number(r.retries), number(r.rounds), number(r.impacts), r.violation, r.max_strain,
+      number(r.refused), number(r.states), number(r.penetrations), r.finite ? "no" : "yes",
+      r.seconds, r.passed() ? "pass" : "FAIL");
+  for (const std::string& failure : r.failures) std::printf("    required: %s\n", failure.c_str());
+  std::fflush(stdout);
+}
+
+Json describe(const Case& test, Build build, const CaseResult& r) {
+  Json json;
+  json["name"] = test.name;
+  json["required"] = test.required;
+  json["build"] = build_name(build);
+  json["steps"] = r.steps;
+  json["substeps"] = r.substeps;
+  json["retries"] = r.retries;
+  json["rounds"] = r.rounds;
+  json["impacts"] = r.impacts;
+  json["zone_violation"] = r.violation;
+  json["max_strain"] = r.max_strain;
+  json["max_speed"] = r.max_speed;
+  json["refused_steps"] = r.refused;
+  json["states_checked"] = r.states;
+  json["penetrations"] = r.penetrations;
+  json["finite"] = r.finite;
+  json["seconds"] = r.seconds;
+  json["passed"] = r.passed();
+  json["failures"] = r.failures;
+  json["note"] = r.note;
+  return json;
+}
+
+}  // namespace
+
+int run_stability(const BenchOptions& options) {
+  make_output_folder(options.out);
+  set_thread_count(options.threads);
+  const std::vector<Build> builds = chosen_builds(options.device);
+  Json results;
+  results["suite"] = options.suite;
+  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  stability::Settings settings;
+  settings.threads = options.threads;
+  settings.soak_seconds = options.soak;
+  print_head();
+  int failed = 0, passed = 0;
+  for (const Case& test : stability::cases()) {
+    if (std::string_view(test.name).find(options.only) == std::string_view::npos) continue;
+    for (const Build build : builds) {
+      settings.build = build;
+      const CaseResult result = run_case(test, settings);
+      ++(result.passed() ? passed : failed);
+      print_row(test, build, result);
+      results["results"].push_back(describe(test, build, result));
+    }
+  }
+  if (passed + failed == 0)
+    throw InputError("--case " + options.only + ": no such case, expected part of a case's name");
+  std::printf("%d passed, %d failed\n", passed, failed);
+  if (!options.out.empty()) write_file(options.out + "/results.json", results.dump(1) + "\n");
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace icloth

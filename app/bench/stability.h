@@ -1,0 +1,12 @@
+// icloth bench stability: the hard cases, one row each.
+#pragma once
+
+#include "app/verbs/bench.h"
+
+namespace icloth {
+
+/// Runs the cases that --case names (all by default) and prints a table; what is required and is
+/// not so is named below its row. Returns 0, or 1 when a case fails.
+int run_stability(const BenchOptions& options);
+
+}  // namespace icloth

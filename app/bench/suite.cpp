@@ -1,0 +1,62 @@
+#include "app/bench/suite.h"
+
+#include <filesystem>
+
+#include "app/machine.h"
+#include "app/options.h"
+#include "kernels/device_problem.h"
+#include "sim/cuda_devices.h"
+#include "sim/error.h"
+
+namespace icloth {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe_cuda() {
+  Json json;
+  const CudaSystem system = cuda_system();
+  for (const CudaDevice& device : system.devices) {
+    if (device.ordinal != cuda_device()) continue;
+    json["device"] = device.name;
+    json["compute_capability"] = capability_text(device.capability);
+    json["memory_bytes"] = device.memory;
+    json["multiprocessors"] = device.multiprocessors;
+    json["l2_cache_bytes"] = device.l2_cache;
+    json["driver_version"] = cuda_version_text(system.driver);
+    json["runtime_version"] = cuda_version_text(system.runtime);
+    json["copy_bandwidth"] = compute_device(Build::cuda32).copy_bandwidth;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::vector<Build> chosen_builds(const std::string& device) {
+  SimulationOptions where;
+  where.device = device;
+  const Build build = choose_build(where);
+  if (device.empty() && build != Build::cpu32) return {Build::cpu32, build};
+  return {build};
+}
+
+Json describe_machine(int threads, bool cuda) {
+  Json json;
+  json["version"] = program_version();
+  json["commit"] = program_commit();
+  json["compiler"] = compiler_name();
+  json["processor"] = processor_name();
+  json["threads"] = threads > 0 ? threads : processor_threads();
+  json["memory_bytes"] = memory_bytes();
+  json["memory_bandwidth"] = measure_memory_bandwidth();
+  if (cuda) json["cuda"] = describe_cuda();
+  return json;
+}
+
+void make_output_folder(const std::string& folder) {
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) throw InputError("--out " + folder + ": " + error.message());
+}
+
+}  // namespace icloth

@@ -1,0 +1,32 @@
+// The report of a benchmark suite: report.html (self-contained), results.json, a CSV a table.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/report/plot.h"
+#include "app/report/table.h"
+
+namespace icloth {
+
+class Report {
+ public:
+  /// `machine`: what the results were measured with; goes to the top.
+  Report(std::string title, nlohmann::ordered_json machine);
+
+  void heading(const std::string& text);
+  void text(const std::string& text);
+  void add(const Plot& plot);
+  /// Prints the table as well.
+  void add(const Table& table);
+
+  /// Writes the files into an existing folder. Throws InputError.
+  void write(const std::string& folder) const;
+
+ private:
+  std::string title_, body_;
+  nlohmann::ordered_json results_;
+  std::vector<Table> tables_;
+};
+
+}  // namespace icloth
