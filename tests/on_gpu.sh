@@ -32,7 +32,7 @@ fail() {
 
 packages=(
   libtbb-dev libtbb12 libtbbmalloc2 libtbbbind-2-5 nlohmann-json3-dev libcli11-dev libgtest-dev
-  libeigen3-dev zlib1g-dev
+  libeigen3-dev zlib1g-dev libstb-dev
   libegl-dev libgl-dev libopengl-dev libglx-dev
   libegl1 libglvnd0 libopengl0 libgl1 libglx0 libx11-6 libxcb1 libxau6 libxdmcp6 libbsd0 libmd0
 )
@@ -49,8 +49,8 @@ pack() {
   for deb in "$debs"/*.deb; do dpkg -x "$deb" "$dir" || fail "$deb cannot be unpacked" 1; done
   rm -rf "$debs"
   # Only what a build needs. The C library's zlib is on every machine, here the static one is used.
-  (cd "$dir" && rm -rf etc lib usr/{share/{doc,man,lintian,X11,bug},src,include/eigen3/unsupported} \
-    usr/lib/x86_64-linux-gnu/libz.so)
+  (cd "$dir" && rm -rf etc lib usr/share/{doc,man,lintian,X11,bug} usr/src usr/include/eigen3/unsupported \
+    usr/lib/x86_64-linux-gnu/lib{z.so,stb*})
   glad --quiet --reproducible --api gl:core=4.5 --extensions "" --out-path "$dir/glad" c ||
     fail "glad failed" 1
   say "$dir: $(du -sm "$dir" | cut -f 1) MiB"
@@ -149,7 +149,7 @@ stage_build() {
   grep -E 'not found|without|CUDA solver|Window' "$work/configure.log" >&2
   local limit=330
   [[ -z $build_only ]] || limit=7200
-  step compile "$limit" cmake --build "$build" --parallel "$jobs"
+  step compile "$limit" cmake --build "$build" --parallel "$jobs" -- -k 0
 }
 
 stage_tests() {

@@ -75,7 +75,7 @@ StageLists run_stages(const testing::StageStart& start) {
   Array<std::uint8_t> dirty;
   dirty.upload(move_back(impacts, stage.world.cloth_vertices, stage.start, end));
   stage.set_end(end);
-  broad_phase.cover_candidate(step, true);
+  broad_phase.cover_dirty(step, dirty.view());
   ccd.find(step, broad_phase, dirty.view(), true);
   out.later = keys_of(ccd.impacts().download());
   return out;

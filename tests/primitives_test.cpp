@@ -197,7 +197,8 @@ struct DeviceTeamWork {
   View<Real> values, sums;
   View<Index> singles;
 
-  ICLOTH_HD void operator()(DeviceTeam& team) const {
+  template <class Team>
+  ICLOTH_HD void operator()(Team& team) const {
     const Index n = values.size();
     team.for_each(n, [&](Index i) { values[i] = WildNumber<Real>{}(i); });
     const Real sum = team.reduce(
