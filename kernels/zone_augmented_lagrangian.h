@@ -5,9 +5,9 @@
 //   λ_j ← μ c̃_j
 //
 // Deviations: the decrease test uses the preconditioned slope g·d in place of ‖ΔX‖²; X' of the
-// Chebyshev step is the iterate before (Wang 2015); the iteration also ends when no constraint is
-// short by more than a fifth of δ, since single precision cannot resolve a step of 10⁻¹² m; and a
-// free zone is then shifted so that it keeps its momentum.
+// Chebyshev step is the iterate before (Wang 2015); the iteration also ends when neither a
+// constraint nor a position is off by more than a fifth of δ, since single precision cannot resolve
+// a step of 10⁻¹² m; and a free zone is then shifted so that it keeps its momentum.
 #pragma once
 
 #include "kernels/zone_problem.h"
@@ -34,6 +34,16 @@ struct CombineZoneStates {
   }
 };
 
+struct Descent {
+  double slope;  ///< gradient · direction
+  Real off;      ///< largest |gradient| / a: how far a vertex is from where the forces balance [m]
+};
+struct CombineDescents {
+  ICLOTH_HD Descent operator()(Descent a, Descent b) const {
+    return {a.slope + b.slope, Max{}(a.off, b.off)};
+  }
+};
+
 template <class Team>
 class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
  public:
@@ -45,9 +55,11 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
     prepare();
     Real omega = 1;
     int k = 0, since_restart = 0;
-    for (; k < set_.iterations && state_.violation > set_.tolerance; ++k) {
-      const double slope = team_.reduce(
-          nv_, 0.0, [&](Index i) { return descend(i); }, Sum{});
+    for (; k < set_.iterations; ++k) {
+      const Descent descent = team_.reduce(
+          nv_, Descent{0, 0}, [&](Index i) { return descend(i); }, CombineDescents{});
+      const double slope = descent.slope;
+      if (state_.violation <= set_.tolerance && descent.off <= set_.tolerance) break;
       Real step = 1;
       ZoneObjective trial = line_search(slope, step);
       if (step * static_cast<Real>(std::sqrt(slope)) < set_.step_threshold) break;
@@ -106,7 +118,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
   }
 
   /// Jacobi-preconditioned direction of one vertex (Algorithm 3, line 3); returns its slope.
-  ICLOTH_HD double descend(Index i) const {
+  ICLOTH_HD Descent descend(Index i) const {
     const Real a = static_cast<Real>(this->weight(i));
     Vec3r gradient = a * (x_[i] - target_[i]);
     Real diagonal = a;
@@ -116,7 +128,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
       diagonal += set_.penalty * w * w;
     });
     direction_[i] = (Real(1) / diagonal) * gradient;
-    return static_cast<double>(dot(gradient, direction_[i]));
+    return {static_cast<double>(dot(gradient, direction_[i])), norm(gradient) / a};
   }
 
   /// Backtracking (Eq. 7) from a whole step on.

@@ -83,12 +83,8 @@ struct Outside {
 
 }  // namespace
 
-void BroadPhase::make_boxes(StepContext& step, bool predicted, bool after_impacts) {
+void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
   const Topology& mesh = step.mesh;
-  // Pad: the repulsion reaches h, and what the solve does beyond the prediction must fit too.
-  const Real pad = std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
-                             // After a zone solve, the next ones will move vertices further still.
-                             static_cast<Real>(after_impacts ? 0.5 : 0.2) * mesh.median_edge});
   vertex_box_.resize(mesh.vertices);
   face_box_.resize(mesh.faces);
   edge_box_.resize(mesh.edges);
@@ -104,6 +100,13 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, bool after_impact
     tree_.update(mesh, boxes(), rebuild);
   }
   boxes_valid_ = true;
+}
+
+/// What paths may do beyond the expected without making the lists anew: the repulsion reaches h,
+/// and the solve differs from the prediction.
+Real BroadPhase::slack(const StepContext& step) {
+  return std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
+                   static_cast<Real>(0.2) * step.mesh.median_edge});
 }
 
 void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dirty) {
@@ -133,25 +136,26 @@ bool BroadPhase::covers(StepContext& step, bool predicted, Real margin) const {
 void BroadPhase::prepare(StepContext& step) {
   // Two elements closer than h must overlap: each end needs half of h around it.
   if (complete_ && covers(step, true, static_cast<Real>(0.5) * step.thickness())) return;
-  make_boxes(step, true, false);
+  make_boxes(step, true, slack(step));
   find_candidates(step, {});
 }
 
 void BroadPhase::cover_candidate(StepContext& step) {
   if (complete_ && covers(step, false, Real(0))) return;
-  make_boxes(step, false, false);
+  make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }
 
 void BroadPhase::cover_dirty(StepContext& step, View<const std::uint8_t> dirty) {
   const bool covered = covers(step, false, Real(0));
   if (covered && complete_) return;
-  if (!covered) make_boxes(step, false, true);
+  // No slack: lists of dirty pairs serve one round, and tight boxes keep them short.
+  if (!covered) make_boxes(step, false, Real(0));
   find_candidates(step, dirty);
 }
 
 void BroadPhase::cover_again(StepContext& step) {
-  make_boxes(step, false, false);
+  make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }
 

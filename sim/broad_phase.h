@@ -36,7 +36,8 @@ class BroadPhase {
  private:
   /// True while every path, with `margin` around it, lies in its vertex's trusted region.
   bool covers(StepContext& step, bool predicted, Real margin) const;
-  void make_boxes(StepContext& step, bool predicted, bool after_impacts);
+  static Real slack(const StepContext& step);
+  void make_boxes(StepContext& step, bool predicted, Real pad);
   /// `dirty`: empty for all pairs.
   void find_candidates(StepContext& step, View<const std::uint8_t> dirty);
   ElementBoxes boxes() const { return {vertex_box_.view(), face_box_.view(), edge_box_.view()}; }

@@ -283,21 +283,21 @@ TEST(ImpactZones, PlainGradientStepsReachTheConstraintsToo) {
   for (const Impact& impact : impacts) EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.offset);
 }
 
-/// Sheets that pass through each other: the dual solver ends at the optimum, the others further
-/// away or, for the linear one, where it cannot be told from it.
+/// Sheets that pass through each other: the dual solver ends at the optimum, the paper's comes near
+/// it in its 100 iterations.
 TEST(ImpactZones, DualSolverFindsTheOptimum) {
   for (const Index side : {5, 15, 50}) {
     const double optimum = cpu64::solve_zone_trial(side, ZoneSolver::dual, 10000).objective;
     const ZoneTrial dual = solve_zone_trial(side, ZoneSolver::dual, 100);
     const ZoneTrial paper = solve_zone_trial(side, ZoneSolver::augmented_lagrangian, 100);
     const Parameters defaults;
-    for (const ZoneTrial& trial : {dual, paper}) {
-      EXPECT_LE(trial.violation, 0.2 * defaults.offset);
-      EXPECT_LT(trial.momentum, 1e-4);
-    }
+    EXPECT_LE(dual.violation, 0.2 * defaults.offset);
+    EXPECT_LT(paper.violation, defaults.offset) << "no penetration, but not converged either";
+    for (const ZoneTrial& trial : {dual, paper}) EXPECT_LT(trial.momentum, 1e-4);
     EXPECT_LE(dual.complementarity, 0.2 * defaults.offset);
     EXPECT_NEAR(dual.objective, optimum, 0.01 * optimum) << side;
-    EXPECT_GE(paper.objective, 0.99 * optimum);
+    EXPECT_GT(paper.objective, 0.99 * optimum);
+    EXPECT_LT(paper.objective, 1.5 * optimum);
     EXPECT_LT(dual.iterations, 20);
   }
 }
