@@ -1,0 +1,145 @@
+#include "app/stability/case_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "sim/error.h"
+#include "sim/intersections.h"
+
+namespace icloth::stability {
+namespace {
+
+bool all_finite(const std::vector<Vec3d>& list) {
+  return std::ranges::all_of(
+      list, [](Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
+}
+
+std::string counted(std::int64_t number, const char* what) {
+  return std::to_string(number) + " " + what;
+}
+
+}  // namespace
+
+Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
+  const auto pairs = find_start_intersections(*scene, settings_.build != Build::cpu64);
+  require(pairs.empty(), "the start state of the case is free of intersections");
+  faces_.clear();
+  group_.clear();
+  Index first = 0;
+  const auto append = [&](const TriangleMesh& mesh, int number) {
+    for (const Triangle& t : mesh.faces)
+      faces_.push_back({t[0] + first, t[1] + first, t[2] + first});
+    group_.resize(faces_.size(), number);
+    first += static_cast<Index>(mesh.positions.size());
+  };
+  for (const Cloth& cloth : scene->cloths) append(cloth.mesh, 0);
+  for (const Obstacle& obstacle : scene->obstacles) append(obstacle.mesh, -1);
+  simulator_ = make_simulator(settings_.build, std::move(scene));
+  return *simulator_;
+}
+
+void CaseRun::throw_cloth(std::size_t cloth, Vec3d velocity) {
+  Snapshot state = simulator_->snapshot();
+  const Scene& scene = simulator_->scene();
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < cloth; ++c) first += scene.cloths[c].mesh.positions.size();
+  const std::size_t end = first + scene.cloths[cloth].mesh.positions.size();
+  for (std::size_t v = first; v < end; ++v) state.velocities[v] = velocity;
+  simulator_->restore(state);
+}
+
+void CaseRun::check_state() {
+  const Snapshot state = simulator_->snapshot();
+  result_.finite = result_.finite && all_finite(state.positions) && all_finite(state.velocities);
+  if (!result_.finite) return;
+  ++result_.states;
+  result_.penetrations +=
+      static_cast<std::int64_t>(find_intersections(state.positions, faces_, group_).size());
+}
+
+void CaseRun::check_refusal(const Snapshot& before, const StepReport& report) {
+  ++result_.refused;
+  const Snapshot after = simulator_->snapshot();
+  require(after.positions == before.positions && after.velocities == before.velocities &&
+              after.time == before.time,
+          "a refused step keeps the state before it");
+  if (report.finite) require(!report.offending.empty(), "a refused step names its pairs");
+}
+
+StepReport CaseRun::step(std::span<const InputEvent> events) {
+  const Snapshot before = simulator_->snapshot();
+  const StepReport report = simulator_->step(events);
+  ++result_.steps;
+  result_.substeps += report.substeps;
+  result_.retries += report.retries;
+  result_.rounds += report.rounds;
+  result_.impacts += report.impacts_first;
+  result_.violation = std::max(result_.violation, report.zone_violation);
+  result_.max_strain = std::max(result_.max_strain, report.max_strain);
+  result_.max_speed = std::max(result_.max_speed, report.max_speed);
+  if (!report.accepted)
+    check_refusal(before, report);
+  else if (result_.steps % check_every_ == 0)
+    check_state();
+  return report;
+}
+
+bool CaseRun::steps(int count) {
+  for (int k = 0; k < count; ++k)
+    if (!step().accepted) return false;
+  return true;
+}
+
+bool CaseRun::run_for(double seconds) {
+  return steps(static_cast<int>(std::lround(seconds / simulator_->parameters().time_step)));
+}
+
+void CaseRun::require(bool holds, const std::string& what) {
+  if (!holds && std::ranges::find(result_.failures, what) == result_.failures.end())
+    result_.failures.push_back(what);
+}
+
+void CaseRun::require_input_error(const std::function<void()>& load,
+                                  const std::vector<std::string>& words) {
+  try {
+    load();
+  } catch (const InputError& error) {
+    for (const std::string& word : words)
+      require(std::string(error.what()).find(word) != std::string::npos,
+              "'" + word + "' is in the message: " + error.what());
+    return;
+  }
+  require(false, "an error about " + words.front());
+}
+
+void CaseRun::note(const std::string& text) {
+  if (!result_.note.empty()) result_.note += "; ";
+  result_.note += text;
+}
+
+CaseResult CaseRun::finish() {
+  require(result_.penetrations == 0,
+          "no intersections (" + counted(result_.penetrations, "pairs") + ")");
+  require(result_.finite, "finite numbers");
+  require(refusals_allowed_ || result_.refused == 0,
+          "every step is accepted (" + counted(result_.refused, "refused") + ")");
+  return result_;
+}
+
+CaseResult run_case(const Case& test, const Settings& settings) {
+  const auto begin = std::chrono::steady_clock::now();
+  CaseRun run(settings);
+  try {
+    test.run(run);
+  } catch (const std::exception& error) {
+    run.require(false, std::string("no exception (") + error.what() + ")");
+  }
+  CaseResult result = run.finish();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  result.seconds = taken.count();
+  return result;
+}
+
+}  // namespace icloth::stability
