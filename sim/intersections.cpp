@@ -9,14 +9,14 @@
 #include <mutex>
 #include <numeric>
 
+#include "sim/exact_triangles.h"
+
 #if defined(ICLOTH_HAS_CGAL)
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #endif
 
 namespace icloth {
 namespace {
-
-using FaceCorners = std::array<Vec3d, 3>;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -101,21 +101,6 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-/// Side of d against the plane a b c: −1 or +1 when it is certain in spite of rounding, else 0.
-/// Bound of Shewchuk 1997, "Adaptive precision floating-point arithmetic", Section 4.3.
-int certain_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
-  const Vec3d u = a - d, v = b - d, w = c - d;
-  const double vw0 = v.x * w.y, vw1 = w.x * v.y, wu0 = w.x * u.y, wu1 = u.x * w.y;
-  const double uv0 = u.x * v.y, uv1 = v.x * u.y;
-  const double det = u.z * (vw0 - vw1) + v.z * (wu0 - wu1) + w.z * (uv0 - uv1);
-  const double size = (std::fabs(vw0) + std::fabs(vw1)) * std::fabs(u.z) +
-                      (std::fabs(wu0) + std::fabs(wu1)) * std::fabs(v.z) +
-                      (std::fabs(uv0) + std::fabs(uv1)) * std::fabs(w.z);
-  // The second term covers products that underflow.
-  const double bound = 8.0 * 0x1p-53 * size + 1e-280;
-  return det > bound ? 1 : det < -bound ? -1 : 0;
-}
-
 /// True when the segment p q certainly does not touch the triangle.
 bool certainly_misses(Vec3d p, Vec3d q, const FaceCorners& t) {
   const int above = certain_side(t[0], t[1], t[2], p);
@@ -150,8 +135,9 @@ bool intersect(const FaceCorners& s, const FaceCorners& t) {
   return CGAL::do_intersect(a, b);
 }
 #else
-/// Without exact arithmetic, what is not certainly disjoint counts as intersecting.
-bool intersect(const FaceCorners& s, const FaceCorners& t) { return !certainly_disjoint(s, t); }
+bool intersect(const FaceCorners& s, const FaceCorners& t) {
+  return !certainly_disjoint(s, t) && triangles_meet(s, t);
+}
 #endif
 
 bool share_vertex(const Triangle& a, const Triangle& b) {
