@@ -56,6 +56,13 @@ std::string ElementNames::pair(const OffendingPair& pair) const {
 
 bool report_start_intersections(const Scene& scene, bool single_precision) {
   constexpr std::size_t shown = 10;
+  if (scene.repair)
+    std::fprintf(
+        stderr,
+        "icloth: start repaired: of %zu pairs of faces %zu are left, %zu vertices moved by "
+        "at most %.3g mm\n",
+        scene.repair->pairs_before, scene.repair->pairs_left, scene.repair->moved,
+        1e3 * scene.repair->largest_move);
   const auto pairs = find_start_intersections(scene, single_precision);
   if (pairs.empty()) return false;
   const ElementNames names(scene);

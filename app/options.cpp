@@ -76,6 +76,9 @@ void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool sce
   verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
       ->check(check_time)
       ->excludes(steps);
+  verb.add_flag_callback(
+      "--repair-start", [&options] { options.overrides.emplace_back("repair_start=on"); },
+      "separate faces that intersect a little at the start");
   verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
       ->allow_extra_args(false);
   verb.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");

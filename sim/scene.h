@@ -1,6 +1,7 @@
 // A scene as the user describes it: const while it is simulated. SI units, Y up.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,13 @@ struct CameraPose {
   double fov = 35;  ///< vertical [degrees]
 };
 
+/// What the repair of a start state did (sim/repair.h).
+struct StartRepair {
+  std::size_t pairs_before = 0, pairs_left = 0;  ///< intersecting pairs of faces
+  std::size_t moved = 0;                         ///< vertices that are somewhere else now
+  double largest_move = 0;                       ///< [m]
+};
+
 struct Scene {
   std::string name;
   std::string source;     ///< path or built-in name it was loaded from
@@ -67,6 +75,7 @@ struct Scene {
   std::vector<Obstacle> obstacles;
   std::vector<ScriptedGrab> input;
   std::vector<CameraPose> cameras;
+  std::optional<StartRepair> repair;  ///< where it was asked for
 };
 
 }  // namespace icloth

@@ -11,6 +11,7 @@
 #include "sim/file_io.h"
 #include "sim/material_io.h"
 #include "sim/mesh_io.h"
+#include "sim/repair.h"
 #include "sim/scene_json.h"
 
 namespace icloth {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Overrides {
+  bool repair_start = false;
   std::vector<std::pair<std::string_view, std::string_view>> parameters;
   double triangles = 0;  ///< 0: as the scene says
 };
@@ -32,6 +34,13 @@ double parse_triangles(std::string_view text, Index most) {
   return number;
 }
 
+bool parse_switch(std::string_view key, std::string_view value) {
+  if (value == "on" || value == "true" || value == "1") return true;
+  if (value == "off" || value == "false" || value == "0") return false;
+  throw InputError("--set " + std::string(key) + ": value '" + std::string(value) +
+                   "', expected on or off");
+}
+
 Overrides split_overrides(std::span<const std::string> arguments, const SceneLimits& limits) {
   Overrides overrides;
   for (std::string_view argument : arguments) {
@@ -41,6 +50,8 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
     if (key == "triangles") {
       overrides.triangles = parse_triangles(value, limits.triangles);
+    } else if (key == "repair_start") {
+      overrides.repair_start = parse_switch(key, value);
     } else {
       overrides.parameters.emplace_back(key, value);
     }
@@ -172,6 +183,7 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
     if (!points.empty()) scene->cameras.push_back(framing_camera(points));
   }
   for (const auto& [key, value] : set.parameters) set_parameter(scene->parameters, key, value);
+  if (set.repair_start) repair_start(*scene, median_edge(*scene));
   return scene;
 }
 
