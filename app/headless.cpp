@@ -17,7 +17,9 @@ void print_refusal(const Scene& scene, const StepReport& report) {
   const ElementNames names(scene);
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
                static_cast<long long>(report.step), report.time,
-               report.finite ? "" : "the state was not finite, ",
+               !report.finite   ? "the state was not finite, "
+               : report.pinched ? "bodies leave the cloth no room, "
+                                : "",
                static_cast<long long>(report.impacts_left));
   for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
     std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());

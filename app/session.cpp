@@ -39,6 +39,13 @@ std::string failure_sentence(const StepReport& report) {
                   "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
                   "cloth is where it was before. A smaller time step usually helps.",
                   report.time);
+  } else if (report.pinched) {
+    std::snprintf(text, sizeof text,
+                  "The step at %.3f s was refused: moving bodies leave the cloth no room (%lld "
+                  "collision%s). The cloth is where it was before and nothing has passed through. "
+                  "The bodies have to be further apart, or the thickness smaller.",
+                  report.time, static_cast<long long>(report.impacts_left),
+                  report.impacts_left == 1 ? "" : "s");
   } else {
     std::snprintf(text, sizeof text,
                   "The step at %.3f s was refused: %lld collision%s could not be resolved in %lld "

@@ -67,9 +67,12 @@ struct RollBack {
   View<const Vec3r> x0;
   View<Vec3r> x1;
   View<std::uint8_t> dirty;
-  ICLOTH_HD void operator()(Index i) const {
+  /// 1 where a vertex was somewhere else.
+  ICLOTH_HD Index operator()(Index i) const {
     dirty[i] = first[i + 1] > first[i] ? 1 : 0;
-    if (dirty[i] != 0) x1[i] = x0[i];
+    if (dirty[i] == 0 || x1[i] == x0[i]) return 0;
+    x1[i] = x0[i];
+    return 1;
   }
 };
 
@@ -279,14 +282,16 @@ void ImpactZones::back_to_candidate(StepContext& step) {
            TakeCandidate{step.state.candidate.view(), step.state.x1.view()});
 }
 
-void ImpactZones::roll_back(StepContext& step, const Array<Impact>& impacts) {
+bool ImpactZones::roll_back(StepContext& step, const Array<Impact>& impacts) {
   const Index vertices = step.mesh.cloth_vertices;
   slots_.resize(impacts.size());
   for_each("impact_zones.corners", impacts.size(), ImpactCorners{impacts.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);
   dirty_.resize(vertices);
-  for_each("impact_zones.roll_back", vertices,
-           RollBack{incidence_.first(), step.state.x0.view(), step.state.x1.view(), dirty_.view()});
+  return reduce("impact_zones.roll_back", vertices, Index{0},
+                RollBack{incidence_.first(), step.state.x0.view(), step.state.x1.view(),
+                         dirty_.view()},
+                Sum{}) > 0;
 }
 
 }  // namespace icloth::ICLOTH_BUILD

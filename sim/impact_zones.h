@@ -19,8 +19,9 @@ class ImpactZones {
 
   /// x1 as the implicit step left it.
   void back_to_candidate(StepContext& step);
-  /// Sets every vertex of a colliding pair back to where it was at the start; writes dirty().
-  void roll_back(StepContext& step, const Array<Impact>& impacts);
+  /// Sets every vertex of a colliding pair back to where it was at the start; writes dirty(). False
+  /// when all of them were there already.
+  bool roll_back(StepContext& step, const Array<Impact>& impacts);
 
   /// Largest |x1 − x*| of the last solve [m].
   Real largest_correction() const { return largest_correction_; }

@@ -45,6 +45,7 @@ struct StepReport {
   bool accepted = true;                  ///< false: the state before the step was kept
   bool finite = true;                    ///< false: NaN or infinity appeared and was thrown away
   std::vector<OffendingPair> offending;  ///< of a refused step, at most 100
+  bool pinched = false;  ///< refused, and every pair left is with an obstacle: it leaves no room
 };
 
 /// One column of the statistics table.

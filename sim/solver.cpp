@@ -205,11 +205,14 @@ void Solver::back_to_start() {
 void Solver::report_offending(StepReport& report) const {
   constexpr std::size_t kMost = 100;
   report.offending.clear();
+  report.pinched = report.finite;
   if (!report.finite) return;
   for (const Impact& impact : ccd_.impacts().download()) {
-    if (report.offending.size() == kMost) break;
     const Index* v = impact.s.v;
-    report.offending.push_back({key_is_edge_edge(impact.key), {v[0], v[1], v[2], v[3]}});
+    report.pinched =
+        report.pinched && std::any_of(v, v + 4, [&](Index i) { return i >= mesh_.cloth_vertices; });
+    if (report.offending.size() < kMost)
+      report.offending.push_back({key_is_edge_edge(impact.key), {v[0], v[1], v[2], v[3]}});
   }
 }
 

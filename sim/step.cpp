@@ -66,18 +66,22 @@ bool Solver::resolve_by_zones(StepContext& step) {
   }
 }
 
-/// What still collides stays where it was; with resting obstacles this always ends, at the latest
-/// in the state of the start.
+/// What still collides stays where it was. With resting obstacles this always ends, at the latest
+/// in the state of the start; where nothing is left to put back, moving obstacles squeeze the
+/// cloth.
 bool Solver::resolve_by_rollback(StepContext& step) {
   if (!step.report.finite || !parameters_.impact_zones_enabled) return false;
   impact_zones_.back_to_candidate(step);
-  for (int round = 0; round < 10 * parameters_.max_rounds; ++round) {
-    find_impacts(step, round == 0);
-    if (step.report.impacts_left == 0) return true;
+  find_impacts(step, true);
+  while (step.report.impacts_left > 0) {
     ++step.report.rounds;
-    timed(step.report.ms_impact_zones, [&] { impact_zones_.roll_back(step, ccd_.impacts()); });
+    bool moved = false;
+    timed(step.report.ms_impact_zones,
+          [&] { moved = impact_zones_.roll_back(step, ccd_.impacts()); });
+    if (!moved) return false;
+    find_impacts(step, false);
   }
-  return false;
+  return true;
 }
 
 /// All pairs in the first round; later, unless told otherwise, those with a dirty vertex.
@@ -128,6 +132,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     }
     if (report.accepted) {
       report.offending.clear();
+      report.pinched = false;
       time_ += report.dt;
       report.step = ++step_index_;
     } else {

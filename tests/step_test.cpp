@@ -323,6 +323,7 @@ TEST_P(Builds, AnInfeasiblePinchIsRefused) {
     const Snapshot before = simulator->snapshot();
     const StepReport report = simulator->step({});
     refused = !report.accepted;
+    EXPECT_EQ(report.pinched, refused);
     EXPECT_EQ(soup.intersections(*simulator), 0u) << k;
     EXPECT_TRUE(!refused || same_state(simulator->snapshot(), before));
   }
