@@ -12,11 +12,12 @@ namespace icloth::ICLOTH_BUILD {
 /// A pair in proximity, as found at the start of the step.
 struct Contact {
   std::uint64_t key;
-  Stencil s;      ///< gap vector g(x0) = Σ w x0
-  Vec3r normal;   ///< unit, along g
-  Real gap;       ///< |g| [m]
-  Real area;      ///< of the features [m²]
-  Real friction;  ///< Coulomb coefficient
+  Stencil s;       ///< gap vector g(x0) = Σ w x0
+  Vec3r normal;    ///< unit, along g
+  Real gap;        ///< |g| [m]
+  Real area;       ///< of the features [m²]
+  Real friction;   ///< Coulomb coefficient
+  Real thickness;  ///< h of the pair [m]
 };
 
 /// What a contact adds to the system A Δv = b: H [kg] on the left, impulse [N·s] on the right.
@@ -38,7 +39,6 @@ ICLOTH_HD inline Real end_gap(const Contact& c, Vec3r relative, Real dt) {
 
 struct ContactLaw {
   Real stiffness;  ///< k [N/m³]
-  Real thickness;  ///< h [m]
   Real dt;         ///< [s]
 };
 
@@ -48,17 +48,17 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
                                           Vec3r end, bool solved, Real inverse_mass) {
   ContactTerm t{};
   const Real predicted = end_gap(c, end, law.dt);
-  if (!(predicted < law.thickness)) return t;
+  if (!(predicted < c.thickness)) return t;
   t.active = 1;
   // Along the normal: dt k a (h − gap − dt n·Σ w (v + Δv)).
   const Real k = law.stiffness * c.area, kn = law.dt * law.dt * k;
   const Real approach = dot(c.normal, start);
-  const Real push = law.dt * k * (law.thickness - c.gap) - kn * approach;
+  const Real push = law.dt * k * (c.thickness - c.gap) - kn * approach;
   // Across: Coulomb's impulse μN as a drag. Before a solve, the drag with which the expected slide
   // v̂ (1 − r), r = μN/(m|v̂|), comes out of v̂ / (1 + drag/m); after one, the secant μN/|v|.
-  Real normal_impulse = law.dt * k * (law.thickness - predicted);
+  Real normal_impulse = law.dt * k * (c.thickness - predicted);
   // Before a solve: what the present compression carries, and what stops the approach.
-  const Real carried = law.dt * k * std::fmax(law.thickness - c.gap, Real(0));
+  const Real carried = law.dt * k * std::fmax(c.thickness - c.gap, Real(0));
   const Real stop = std::fmax(-approach, Real(0)) / inverse_mass;
   if (!solved) normal_impulse = std::fmin(normal_impulse, carried + stop);
   const Vec3r slide = end - dot(c.normal, end) * c.normal;

@@ -186,9 +186,10 @@ struct Contradicted {
   View<const ContactTerm> term;
 
   ICLOTH_HD Index operator()(Index i) const {
+    const Real thickness = motion.contacts[i].thickness;
     const Real gap = end_gap(motion.contacts[i], motion.end(i), law.dt);
-    return term[i].active != 0 ? (gap > 2 * law.thickness ? 1 : 0)
-                               : (gap < Real(0.25) * law.thickness ? 1 : 0);
+    return term[i].active != 0 ? (gap > 2 * thickness ? 1 : 0)
+                               : (gap < Real(0.25) * thickness ? 1 : 0);
   }
 };
 
@@ -335,8 +336,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
                           s.inverse_mass.view(),      contacts.view(),
                           contact_terms_.view(),      incidence.first(),
                           incidence.entries()};
-  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.thickness(),
-                       step.dt};
+  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
   ContactMotion motion{contacts.view(),          s.v.view(), dv_.view(), s.inverse_mass.view(),
                        step.dt * step.gravity(), false};
   // The repulsion acts one way only; which contacts close is known for certain after a solve.

@@ -64,6 +64,7 @@ struct ContactMaker {
     }
     if (same_cloth && !touches_obstacle && norm2(apply(c.s, rest)) < 4 * thickness * thickness)
       return false;
+    c.thickness = thickness;
     c.friction = touches_obstacle ? friction_obstacle : friction_cloth;
     return true;
   }
@@ -129,7 +130,58 @@ struct GapOf {
   ICLOTH_HD Real operator()(Index i) const { return contacts[i].gap; }
 };
 
+/// Smallest gap among the contacts of a vertex, at most h.
+struct StartGap {
+  View<const Contact> contacts;
+  View<const Index> first, entries;
+  View<Real> gap;
+  Real thickness;
+
+  /// 1 where it is below h.
+  ICLOTH_HD Index operator()(Index v) const {
+    Real least = thickness;
+    for (Index k = first[v]; k < first[v + 1]; ++k)
+      least = std::fmin(least, contacts[entries[k] / 4].gap);
+    gap[v] = least;
+    return least < thickness ? 1 : 0;
+  }
+};
+
+/// The thickness of a pair grows from the gap that its vertices started with.
+struct RampThickness {
+  View<const Real> start_gap;
+  View<Contact> contacts;
+  Real share;  ///< 0 at the start, 1 where the whole thickness is reached
+
+  ICLOTH_HD void operator()(Index i) const {
+    Contact& c = contacts[i];
+    for (const Index v : c.s.v) {
+      if (v >= start_gap.size()) continue;
+      const Real ramped = start_gap[v] + share * (c.thickness - start_gap[v]);
+      if (ramped < c.thickness) c.thickness = ramped;
+    }
+  }
+};
+
+constexpr double kRampTime = 0.2;  // [s]
+
 }  // namespace
+
+/// Layers that start closer than h would be thrown apart by a repulsion that acts at once.
+void Proximity::note_start_gaps(const StepContext& step) {
+  start_gap_.resize(step.mesh.cloth_vertices);
+  const Index close = reduce("proximity.start_gaps", step.mesh.cloth_vertices, Index{0},
+                             StartGap{contacts_.view(), incidence_.first(), incidence_.entries(),
+                                      start_gap_.view(), step.thickness()},
+                             Sum{});
+  if (close == 0) start_gap_.resize(0);
+}
+
+void Proximity::ramp_thickness(const StepContext& step) {
+  const double share = std::fmin(step.time / kRampTime, 1.0);
+  for_each("proximity.ramp", contacts_.size(),
+           RampThickness{start_gap_.view(), contacts_.view(), static_cast<Real>(share)});
+}
 
 void Proximity::clear(StepContext& step) {
   contacts_.resize(0);
@@ -169,6 +221,8 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
   slots_.resize(contacts_.size());
   for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots_.view()});
   incidence_.build(slots_.view(), mesh.cloth_vertices);
+  if (step.time == 0) note_start_gaps(step);
+  if (!start_gap_.empty() && step.time < kRampTime) ramp_thickness(step);
   step.report.proximity_pairs = contacts_.size();
   step.report.min_gap = static_cast<double>(
       reduce("proximity.min_gap", contacts_.size(), h, GapOf{contacts_.view()}, Min{}));

@@ -19,11 +19,17 @@ class Proximity {
   const Incidence& incidence() const { return incidence_; }
 
  private:
+  void note_start_gaps(const StepContext& step);
+  void ramp_thickness(const StepContext& step);
+
   Array<Contact> contacts_;  ///< (contacts), find
   Array<Contact> found_;
   SortedAppend append_sorted_;
   Array<Int4> slots_;
   Incidence incidence_;
+  /// Smallest gap of each vertex in the start state, at most h [m] (cloth_vertices); empty when
+  /// nothing starts closer than h. note_start_gaps
+  Array<Real> start_gap_;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

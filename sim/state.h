@@ -36,7 +36,8 @@ struct StepContext {
   const Parameters& parameters;
   State& state;
   StepReport& report;
-  Real dt;  ///< [s]
+  Real dt;            ///< [s]
+  double time = 1e9;  ///< of the simulation, at the start of the substep [s]
 
   Real offset() const { return static_cast<Real>(parameters.offset); }
   Real thickness() const { return static_cast<Real>(parameters.thickness); }

@@ -33,7 +33,7 @@ void timed(double& milliseconds, const Stage& stage) {
 
 bool Solver::try_substep(StepReport& report, double start, double dt, bool last_resort) {
   begin_substep(start, dt);
-  StepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt)};
+  StepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
 
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
   timed(report.ms_proximity, [&] {
