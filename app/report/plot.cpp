@@ -9,7 +9,7 @@
 namespace icloth {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 360, kLeft = 70, kRight = 20, kTop = 36, kBottom = 52;
+constexpr double kWidth = 760, kHeight = 360, kLeft = 70, kRight = 190, kTop = 36, kBottom = 52;
 // Okabe and Ito's colours: told apart by people with any colour vision.
 constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73",
                                     "#CC79A7", "#E69F00", "#56B4E9"};
@@ -113,13 +113,13 @@ std::string Plot::svg() const {
     out += "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
            "\" stroke-width=\"1.5\"/>\n" + dots;
     const double row = kTop + 14 + 16 * static_cast<double>(k);
-    out += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"3\" fill=\"", kWidth - 190,
+    out += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"3\" fill=\"", kWidth - 180,
                   row - 5) +
            colour + "\"/>\n";
-    out += label(kWidth - 172, row, "text-anchor=\"start\"", series[k].name);
+    out += label(kWidth - 162, row, "text-anchor=\"start\"", series[k].name);
   }
-  out += label(kWidth / 2, 20, "text-anchor=\"middle\" font-size=\"14\"", title);
-  out += label(kWidth / 2, kHeight - 12, "text-anchor=\"middle\"", x_label);
+  out += label(to_x(0.5), 20, "text-anchor=\"middle\" font-size=\"14\"", title);
+  out += label(to_x(0.5), kHeight - 12, "text-anchor=\"middle\"", x_label);
   out += "<g transform=\"translate(16," + format("%.1f", kHeight / 2) + ") rotate(-90)\">" +
          label(0, 0, "text-anchor=\"middle\"", y_label) + "</g>\n";
   return out + "</svg>\n";
