@@ -2,6 +2,8 @@
 
 #include <tbb/global_control.h>
 
+#include <cstdio>
+
 #include "sim/cuda_devices.h"
 #include "sim/error.h"
 #include "sim/world.h"
@@ -20,6 +22,27 @@ std::unique_ptr<Simulator> make_solver(std::shared_ptr<const Scene> scene, World
 #endif
 
 namespace icloth {
+namespace {
+
+/// Far from the origin single precision cannot tell layers apart. Up to half an offset, sheets on
+/// a ball come to rest as they do at the origin, within a few millimetres.
+void check_resolution(const Scene& scene, const World& world) {
+  for (Index v = 0; v < world.cloth_vertices; ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    const double far = norm_max(world.position[i]), resolution = far * 0x1p-23;
+    if (resolution <= 0.5 * scene.parameters.offset) continue;
+    const WorldObject& object = world.objects[static_cast<std::size_t>(world.object[i])];
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "', vertex %d: %g m from the origin, where single precision resolves %.1e m; "
+                  "expected half of impact_zones.offset (%g m) or less, or --precision f64",
+                  static_cast<int>(v - object.first_vertex), far, resolution,
+                  scene.parameters.offset);
+    throw InputError("cloth '" + object.name + text);
+  }
+}
+
+}  // namespace
 
 std::string_view build_name(Build build) {
   switch (build) {
@@ -44,6 +67,7 @@ std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Sce
   if (scene->cloths.empty())
     throw InputError("scene '" + scene->name + "': no cloths, expected at least one");
   World world = make_world(*scene);
+  if (build != Build::cpu64) check_resolution(*scene, world);
   switch (build) {
     case Build::cpu32:
       return cpu32::make_solver(std::move(scene), std::move(world), 0);

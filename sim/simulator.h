@@ -61,7 +61,8 @@ class Simulator {
 bool build_available(Build build, std::string* reason = nullptr);
 
 /// The scene must outlive nothing: the simulator keeps its share. Throws DeviceError when the build
-/// is not available, InputError when the scene cannot be simulated (massless vertices …).
+/// is not available, InputError when the scene cannot be simulated (massless vertices, coordinates
+/// that single precision does not resolve …).
 /// Start intersections are not checked here, see sim/intersections.h.
 /// A cuda32 simulator stays on the device that is chosen now, whichever thread calls it.
 std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Scene> scene);

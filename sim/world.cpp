@@ -36,6 +36,16 @@ double rest_area(const Cloth& cloth, const Triangle& t) {
 
 double uv_area(const Corners& u) { return 0.5 * std::fabs(cross2(u[1] - u[0], u[2] - u[0])); }
 
+/// A comparison with NaN is false: what is not finite would slip through every test there is.
+void check_finite(const std::string& object, const std::vector<Vec3d>& positions) {
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const Vec3d p = positions[v];
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+      throw InputError(object + ", vertex " + std::to_string(v) +
+                       ": a coordinate is not finite, expected three numbers");
+  }
+}
+
 void check_cloth(const Cloth& cloth) {
   const std::size_t count = cloth.mesh.positions.size();
   if (!cloth.rest.empty() && cloth.rest.size() != count)
@@ -45,6 +55,8 @@ void check_cloth(const Cloth& cloth) {
   if (!cloth.mesh.uv.empty() && cloth.mesh.uv.size() != cloth.mesh.faces.size())
     throw InputError("cloth '" + cloth.name + "': uv of " + std::to_string(cloth.mesh.uv.size()) +
                      " faces, expected " + std::to_string(cloth.mesh.faces.size()));
+  check_finite("cloth '" + cloth.name + "'", cloth.mesh.positions);
+  check_finite("cloth '" + cloth.name + "' (rest shape)", cloth.rest);
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
     for (Index v : cloth.mesh.faces[f])
       if (v < 0 || at(v) >= count)
@@ -253,6 +265,7 @@ World make_world(const Scene& scene) {
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
     const Obstacle& obstacle = scene.obstacles[o];
     obstacle.pose(0.0, pose);
+    check_finite("obstacle '" + obstacle.name + "'", pose);
     append_object(world, obstacle.name, false, o, obstacle.mesh, pose);
     append_edges(world, world.objects.back(), nullptr, {});
   }

@@ -58,7 +58,8 @@ struct World {
   double median_edge = 0;  ///< of the cloths [m]
 };
 
-/// Throws InputError naming object and element: zero-area rest face, vertex without mass.
+/// Throws InputError naming object and element: zero-area rest face, vertex without mass or with a
+/// coordinate that is not finite.
 World make_world(const Scene& scene);
 
 }  // namespace icloth

@@ -11,6 +11,8 @@ struct BenchOptions {
   std::string device;  ///< cpu, cuda or cuda:N; empty: cpu, then cuda where it is usable
   int threads = 0;     ///< of the CPU builds; 0: all
   bool quiet = false;  ///< no progress line
+  std::string only;    ///< stability: cases whose name holds this; empty: all
+  double soak = 60;    ///< stability: simulated time of the random dragging [s]
 };
 
 /// Runs a suite on every build that this machine has and prints a table. Returns 0, or 1 when a run
