@@ -104,7 +104,7 @@ std::vector<HandSpring> Hands::springs() const {
   for (const Held& h : held_) {
     for (std::size_t k = 0; k < h.vertices.size(); ++k) {
       HandSpring& spring =
-          by_vertex.try_emplace(h.vertices[k], h.vertices[k], 0.0, Vec3d{}).first->second;
+          by_vertex.try_emplace(h.vertices[k], HandSpring{h.vertices[k], 0.0, {}}).first->second;
       const double s = h.stiffness * h.share[k];
       // Several hands on one vertex: the stiffness adds up, the target is their weighted mean.
       const double sum = spring.stiffness + s;

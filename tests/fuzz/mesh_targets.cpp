@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "sim/mesh_formats.h"
+#include "sim/scene_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 
@@ -25,7 +26,15 @@ std::string read(ParseMesh parse, std::string_view bytes, const std::string& nam
     end += group.face_count;
   }
   require(end == faces, "every face in a group");
-  refusal([&] { check_cloth_mesh(file.mesh, name); });
+  if (!refusal([&] { check_cloth_mesh(file.mesh, name); }).empty()) return "";
+  // A cloth: it can be a scene by itself, hung by its top.
+  const auto scene = load_scene(write_scratch(name, bytes), {});
+  require(scene->cloths.size() == 1 && scene->cameras.size() == 1, "a cloth and a camera");
+  require(!scene->cloths[0].pins.empty(), "a cloth that hangs");
+  for (Index v : scene->cloths[0].pins)
+    require(v >= 0 && static_cast<std::size_t>(v) < file.mesh.positions.size(), "pins");
+  const Vec3d eye = scene->cameras[0].eye;
+  require(std::isfinite(eye.x + eye.y + eye.z), "a finite camera");
   return "";
 }
 

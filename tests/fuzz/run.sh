@@ -23,7 +23,7 @@ if ! command -v clang++ > /dev/null; then
 fi
 quietly cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O2 -g" \
   -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DICLOTH_CUDA=OFF \
-  -DICLOTH_SANITIZE=address -DICLOTH_FUZZ=ON
+  -DICLOTH_SANITIZE=address -DICLOTH_FUZZ=ON -DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS
 quietly cmake --build "$build" --target icloth_fuzz
 
 # Fields of the statistics at the end of a log.
