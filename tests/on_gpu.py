@@ -8,6 +8,7 @@ on_gpu.py report WORK OUT [DEVICE]
 """
 import ctypes
 import datetime
+import glob
 import json
 import os
 import re
@@ -169,11 +170,14 @@ def report_bench(found):
     except ValueError:
         found.row("bench", False, found.failure("bench"), "0 penetrations")
         return {}
+    on_cpu = {r["name"]: r["state_hash"] for r in bench.get("results", []) if r["build"] == "cpu32"}
     for result in bench.get("results", []):
+        same = "" if result["build"] == "cpu32" else \
+            ", the bits of cpu32" if on_cpu.get(result["name"]) == result["state_hash"] else ", other bits"
         found.row(f"{result['name']}, {result['build']}",
                   result["penetrations"] == 0 and result["refused_steps"] == 0,
                   f"{result['ms_total']['median']:.2f} ms a step, {result['steps_per_second']:.1f} "
-                  f"steps/s, {result['penetrations']} penetrations", "0 penetrations")
+                  f"steps/s, {result['penetrations']} penetrations{same}", "0 penetrations")
     builds = {result["build"] for result in bench.get("results", [])}
     if "cuda32" not in builds:
         found.row("bench on the device", False, "did not run", "runs")
@@ -211,16 +215,24 @@ def commit_of_tree():
         return "unknown"
 
 
+def compiler_version(found, language):
+    """What CMake found out when the build folder was made."""
+    pattern = os.path.join(os.path.dirname(found.work), "CMakeFiles", "*", f"CMake{language}Compiler.cmake")
+    for path in glob.glob(pattern):
+        with open(path, errors="replace") as file:
+            version = re.search(rf'set\(CMAKE_{language}_COMPILER_VERSION "(.*)"\)', file.read())
+        if version:
+            return version[1]
+    return ""
+
+
 def describe(found, device_text):
     words = device_text.split(" ", 2) if device_text else ["", "", ""]
-    info, configure = found.text("info.log"), found.text("configure.log")
-    commit = re.search(r"(?m)^icloth +\S+ \((.*)\)", info)
-    toolkit = re.search(r"CUDA compiler identification is NVIDIA (\S+)", configure)
-    compiler = re.search(r"CXX compiler identification is (.*)", configure)
+    commit = re.search(r"(?m)^icloth +\S+ \((.*)\)", found.text("info.log"))
     commit = commit[1] if commit else os.environ.get("ICLOTH_COMMIT") or commit_of_tree()
     return {"device": words[2], "compute_capability": f"{words[0][:-1]}.{words[0][-1:]}" if words[0] else "",
-            "driver": words[1], "cuda": toolkit[1] if toolkit else "", "commit": commit,
-            "compiler": compiler[1] if compiler else "", "cores": os.cpu_count(),
+            "driver": words[1], "cuda": compiler_version(found, "CUDA"), "commit": commit,
+            "compiler": compiler_version(found, "CXX"), "cores": os.cpu_count(),
             "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds")}
 
 
