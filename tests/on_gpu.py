@@ -17,6 +17,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as xml
 
+sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "gui"))
 import png  # noqa: E402
 
