@@ -28,7 +28,8 @@ TEST(Report, ColumnsStandInTheOrderThatFilesPromise) {
             "rounds zones largest_zone zone_iterations dynamic_faces static_faces "
             "newton_iterations cg_iterations cg_residual "
             "kinetic_energy elastic_energy gravity_energy max_strain max_speed min_gap "
-            "state_hash ");
+            "state_hash "
+            "zone_violation zone_complementarity zone_momentum box_tests ");
 }
 
 TEST(Report, EveryColumnReadsItsOwnMember) {

@@ -102,7 +102,8 @@ TEST(StatisticsFile, CsvHasARowAsSoonAsAStepIsDone) {
   const std::string text = read(path);
   EXPECT_TRUE(text.starts_with("step,time,dt,")) << text;
   EXPECT_NE(text.find("\n1,0,0,1,0,5,"), std::string::npos) << text;
-  EXPECT_TRUE(text.ends_with(",fedcba9876543211\n")) << text;
+  EXPECT_NE(text.find(",fedcba9876543211,"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with("\n")) << text;
 }
 
 TEST(StatisticsFile, JsonKeepsTheNamesAndTheWholeHash) {
