@@ -111,9 +111,12 @@ void narrow_gap(CaseRun& run) {
 void pinch(CaseRun& run) {
   run.allow_refusals();
   run.start(closing_boxes("pinch", -0.005));
-  const bool accepted = run.run_for(1.0);
-  run.require(!accepted, "the step without a solution is refused");
-  for (int k = 0; k < 3; ++k) run.require(!run.step().accepted, "it stays refused");
+  run.require(!run.run_for(1.0), "the step without a solution is refused");
+  for (int k = 0; k < 2; ++k) {
+    const StepReport report = run.step();
+    run.require(!report.accepted, "it stays refused");
+    run.require(report.pinched, "the report says that bodies leave no room");
+  }
 }
 
 void pin_in_the_way(CaseRun& run) {
