@@ -78,11 +78,11 @@ void folded_flat(CaseRun& run) {
 }
 
 void twisting(CaseRun& run) {
-  run_built_in(run, "twisting", run.brief() ? 1000 : 3000, run.brief() ? 0.5 : 5);
+  run_built_in(run, "twisting", run.brief() ? 1000 : 2000, run.brief() ? 0.5 : 3.5);
 }
 
 void funnel(CaseRun& run) {
-  run_built_in(run, "funnel", run.brief() ? 1000 : 3000, run.brief() ? 0.5 : 3);
+  run_built_in(run, "funnel", run.brief() ? 1000 : 2000, run.brief() ? 0.5 : 2);
 }
 
 void heavy_on_light(CaseRun& run) {
@@ -96,7 +96,7 @@ void heavy_on_light(CaseRun& run) {
   }
   scene->obstacles = {make_body(make_box({0.4, 0.1, 0.4}, 0.1), {0, -0.05, 0})};
   run.start(scene);
-  run.run_for(run.brief() ? 0.2 : 1.0);
+  run.run_for(run.brief() ? 0.2 : 0.5);
 }
 
 void limp_heap(CaseRun& run) {
