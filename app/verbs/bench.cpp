@@ -7,6 +7,7 @@
 #include "app/bench/paper.h"
 #include "app/bench/stability.h"
 #include "app/bench/suite.h"
+#include "app/bench/validation.h"
 #include "app/headless.h"
 #include "app/machine.h"
 #include "sim/cuda_devices.h"
@@ -118,7 +119,9 @@ int run_bench(const BenchOptions& options) {
   if (options.suite == "quick") return run_quick(options);
   if (options.suite == "paper") return run_paper(options);
   if (options.suite == "stability") return run_stability(options);
-  throw InputError("bench: suite '" + options.suite + "', expected quick, paper or stability");
+  if (options.suite == "validation") return run_validation(options);
+  throw InputError("bench: suite '" + options.suite +
+                   "', expected quick, paper, stability or validation");
 }
 
 }  // namespace icloth

@@ -1,0 +1,99 @@
+#include "app/bench/validation.h"
+
+#include <cstdio>
+
+#include "app/bench/suite.h"
+#include "app/validation/case_run.h"
+#include "sim/error.h"
+#include "sim/file_io.h"
+
+namespace icloth {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using validation::Case;
+using validation::CaseResult;
+using validation::Figure;
+
+void print_case(const Case& test, Build build, const CaseResult& r) {
+  for (const Figure& f : r.figures)
+    std::printf("%-19s %-6s %-50s %12.6g %12.6g %9.1e %8.1e  %s\n", test.name,
+                std::string(build_name(build)).c_str(), f.what.c_str(), f.reference, f.measured,
+                f.error, f.target, f.passed() ? "ok" : "FAIL");
+  for (const std::string& failure : r.failures) std::printf("    required: %s\n", failure.c_str());
+  std::fflush(stdout);
+}
+
+Json describe(const Case& test, Build build, const CaseResult& r) {
+  Json json;
+  json["name"] = test.name;
+  json["source"] = test.source;
+  json["build"] = build_name(build);
+  json["steps"] = r.steps;
+  json["seconds"] = r.seconds;
+  json["passed"] = r.passed();
+  json["failures"] = r.failures;
+  json["figures"] = Json::array();
+  for (const Figure& f : r.figures)
+    json["figures"].push_back({{"what", f.what},
+                               {"reference", f.reference},
+                               {"measured", f.measured},
+                               {"error", f.error},
+                               {"absolute", f.absolute},
+                               {"target", f.target},
+                               {"passed", f.passed()}});
+  return json;
+}
+
+std::string csv_rows(const Case& test, Build build, const CaseResult& r) {
+  std::string rows;
+  char numbers[160];
+  for (const Figure& f : r.figures) {
+    std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.3e,%.3e,%s\n", f.reference, f.measured,
+                  f.error, f.target, f.passed() ? "ok" : "FAIL");
+    rows += std::string(test.name) + "," + std::string(build_name(build)) + ",\"" + f.what + "\"" +
+            numbers;
+  }
+  return rows;
+}
+
+}  // namespace
+
+int run_validation(const BenchOptions& options) {
+  make_output_folder(options.out);
+  set_thread_count(options.threads);
+  const std::vector<Build> builds = chosen_builds(options.device);
+  Json results;
+  results["suite"] = options.suite;
+  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  std::string csv = "case,build,what,reference,measured,error,target,verdict\n";
+  std::printf("%-19s %-6s %-50s %12s %12s %9s %8s  %s\n", "case", "build", "what", "reference",
+              "measured", "error", "target", "verdict");
+  int cases = 0, failed = 0;
+  double seconds = 0;
+  for (const Case& test : validation::cases()) {
+    if (std::string_view(test.name).find(options.only) == std::string_view::npos) continue;
+    for (const Build build : builds) {
+      validation::Settings settings;
+      settings.build = build;
+      if (!runs_on(test, settings.build)) continue;
+      const CaseResult result = run_case(test, settings);
+      ++cases;
+      failed += result.passed() ? 0 : 1;
+      seconds += result.seconds;
+      print_case(test, settings.build, result);
+      results["results"].push_back(describe(test, settings.build, result));
+      csv += csv_rows(test, settings.build, result);
+    }
+  }
+  if (cases == 0)
+    throw InputError("--case " + options.only + ": no such case, expected part of a case's name");
+  std::printf("%d of %d cases within their targets, %.1f s\n", cases - failed, cases, seconds);
+  if (!options.out.empty()) {
+    write_file(options.out + "/results.json", results.dump(1) + "\n");
+    write_file(options.out + "/figures.csv", csv);
+  }
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace icloth

@@ -1,0 +1,102 @@
+#include "app/validation/case_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace icloth::validation {
+
+Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
+  simulator_ = make_simulator(settings_.build, std::move(scene));
+  return *simulator_;
+}
+
+StepReport CaseRun::step() {
+  const StepReport report = simulator_->step({});
+  ++result_.steps;
+  if (!report.accepted) throw std::runtime_error("a step was refused");
+  return report;
+}
+
+void CaseRun::steps(int count) {
+  for (int k = 0; k < count; ++k) step();
+}
+
+void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<Vec3d>& velocities) {
+  Snapshot state = simulator_->snapshot();
+  state.positions = positions;
+  state.velocities = velocities;
+  state.velocities.resize(positions.size());
+  simulator_->restore(state);
+}
+
+void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit) {
+  Parameters p = parameters();
+  p.time_step = dt_first;
+  for (int k = 0; k < limit; ++k) {
+    simulator_->set_parameters(p);
+    const std::vector<Vec3d> before = positions();
+    step();
+    const std::vector<Vec3d> after = positions();
+    double moved = 0;
+    for (std::size_t v = 0; v < after.size(); ++v)
+      moved = std::max(moved, norm(after[v] - before[v]));
+    set_state(after, {});
+    if (p.time_step >= dt_last && moved < tolerance) return;
+    p.time_step = std::min(1.2 * p.time_step, dt_last);
+  }
+  require(false, "at rest after " + std::to_string(limit) + " steps");
+}
+
+void CaseRun::add(Figure figure) {
+  if (!figure.passed()) {
+    char text[160];
+    std::snprintf(text, sizeof text, ": %.6g against %.6g, error %.2e, target %.2e",
+                  figure.measured, figure.reference, figure.error, figure.target);
+    result_.failures.push_back(figure.what + text);
+  }
+  result_.figures.push_back(std::move(figure));
+}
+
+void CaseRun::compare(const std::string& what, double reference, double measured, double target) {
+  add({what, reference, measured, std::fabs(measured / reference - 1), target, false});
+}
+
+void CaseRun::compare_absolute(const std::string& what, double reference, double measured,
+                               double target) {
+  add({what, reference, measured, std::fabs(measured - reference), target, true});
+}
+
+void CaseRun::bound(const std::string& what, double measured, double target) {
+  compare_absolute(what, 0, measured, target);
+}
+
+void CaseRun::require(bool holds, const std::string& what) {
+  if (!holds && std::ranges::find(result_.failures, what) == result_.failures.end())
+    result_.failures.push_back(what);
+}
+
+bool runs_on(const Case& test, Build& build) {
+  if (!test.precise) return true;
+  if (build == Build::cuda32) return false;
+  build = Build::cpu64;
+  return true;
+}
+
+CaseResult run_case(const Case& test, const Settings& settings) {
+  const auto begin = std::chrono::steady_clock::now();
+  CaseRun run(settings);
+  try {
+    test.run(run);
+  } catch (const std::exception& error) {
+    run.require(false, std::string("no exception (") + error.what() + ")");
+  }
+  CaseResult result = run.finish();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  result.seconds = taken.count();
+  return result;
+}
+
+}  // namespace icloth::validation

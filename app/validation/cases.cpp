@@ -1,0 +1,25 @@
+#include "app/validation/cases.h"
+
+#include "app/validation/case_run.h"
+
+namespace icloth::validation {
+namespace {
+
+constexpr Case kCases[] = {
+    {"free fall", "backward Euler: x_n = x0 + v0 t + g t (t + dt)/2", true, free_fall},
+    {"oscillator", "backward Euler: 1/sqrt(1 + (w dt)^2) and atan(w dt) a step", true, oscillator},
+    {"momentum", "Newton's third law", true, momentum},
+    {"energy", "second law, hyperelastic fabric", true, energy},
+    {"order in dt", "backward Euler is of first order", true, time_order},
+
+    {"hanging strip", "s(s^2 - 1) k/2 = rho g (L - x)", true, hanging_strip},
+    {"catenary", "sinh z / z = L/S", true, hung_chain},
+    {"chain frequencies", "Bernoulli: j0n/2 sqrt(g/L)", true, chain_frequencies},
+    {"string frequencies", "n pi/L sqrt(T/rho)", true, string_frequencies},
+};
+
+}  // namespace
+
+std::span<const Case> cases() { return kCases; }
+
+}  // namespace icloth::validation

@@ -1,0 +1,31 @@
+// What the measured figures are held against: solutions of the continuous problems, computed here.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace icloth::validation {
+
+/// Elongation [m] of a strip that hangs by its end under its own weight. Second
+/// Piola stress k G, so the local stretch λ at weight w = ρ g (L − s) solves λ(λ² − 1)k/2 = w.
+double hanging_elongation(double length, double density, double gravity, double tensile);
+
+/// Inextensible chain between level points, length/span = ratio > 1. In spans.
+struct Catenary {
+  double sag;        ///< a (cosh z − 1), with sinh z / z = ratio and a = 1/(2z)
+  double parameter;  ///< a: horizontal tension / weight per length
+  double end_angle;  ///< atan(sinh z) [rad]
+};
+Catenary catenary(double ratio);
+
+/// Zero number n = 1, 2, … of the Bessel function J₀.
+double bessel_zero(int n);
+
+/// Clamped horizontal, heavy, inextensible: θ'' = −Γ (1 − s) cos θ, θ(0) = 0, θ'(1) = 0, with
+/// Γ = ρ g L³/D. In lengths; drop H and reach W of the tip.
+struct HeavyElastica {
+  double drop, reach, tip_angle;
+};
+HeavyElastica heavy_elastica(double gamma);
+
+}  // namespace icloth::validation
