@@ -1,8 +1,14 @@
-// Repulsion and friction of one VF or EE pair in proximity, linear in the velocities of the step.
+// Repulsion and friction of one VF or EE pair in proximity, linear in the motion of the step.
 //
 // Repulsion (paper Section 2.5): quadratic in the predicted gap; a pair whose gap will be below the
-// thickness h pushes with k a (h − gap), a the area of its features. Friction: Coulomb's law as the
-// drag coefficient s for which the *implicit* result is Coulomb's (not μ N/|v|, which halves it).
+// thickness h pushes with N = k a (h − gap), a the area of its features.
+//
+// Friction: an elastic stick that slips at Coulomb's limit, in the way of Cundall and Strack 1979,
+// "A discrete numerical model for granular assemblies". The tangential force F that a pair ended
+// the last substep with is carried over; the motion D_T along the contact adds −k a D_T to it, and
+// the result is not longer than μN. It is the projection that an augmented Lagrangian of the stick
+// constraint D_T = 0 makes (Alart and Curnier 1991), with the repulsion's k a as its penalty.
+// Below the limit nothing creeps: the stick rests at a displacement of less than μ (h − gap).
 #pragma once
 
 #include "kernels/stencil.h"
@@ -14,6 +20,7 @@ struct Contact {
   std::uint64_t key;
   Stencil s;       ///< gap vector g(x0) = Σ w x0
   Vec3r normal;    ///< unit, along g
+  Vec3r held;      ///< tangential force at the end of the last substep [N]
   Real gap;        ///< |g| [m]
   Real area;       ///< of the features [m²]
   Real friction;   ///< Coulomb coefficient
@@ -32,52 +39,91 @@ ICLOTH_HD inline Vec3r multiply(const ContactTerm& t, Vec3r v) {
           t.h[2] * v.x + t.h[4] * v.y + t.h[5] * v.z};
 }
 
-/// Gap at the end of a step of relative velocity `relative` [m].
-ICLOTH_HD inline Real end_gap(const Contact& c, Vec3r relative, Real dt) {
-  return c.gap + dt * dot(c.normal, relative);
+/// Part of `a` along the contact.
+ICLOTH_HD inline Vec3r tangential(const Contact& c, Vec3r a) {
+  return a - dot(c.normal, a) * c.normal;
+}
+
+/// Gap at the end of the step, `motion` = Σ w (x1 − x0) [m].
+ICLOTH_HD inline Real end_gap(const Contact& c, Vec3r motion) {
+  return c.gap + dot(c.normal, motion);
 }
 
 struct ContactLaw {
   Real stiffness;  ///< k [N/m³]
-  Real dt;         ///< [s]
+  Real dt;         ///< from a change of velocity to a change of position [s]
 };
 
-/// start: Σ w v at the start of the step; end: the same at its end, expected (from gravity alone)
-/// or solved [m/s]; inverse_mass: Σ w²/m of the free corners [1/kg].
-ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law, Vec3r start,
-                                          Vec3r end, bool solved, Real inverse_mass) {
+/// N at the end of the step [N].
+ICLOTH_HD inline Real normal_force(const Contact& c, const ContactLaw& law, Vec3r motion) {
+  return law.stiffness * c.area * std::fmax(c.thickness - end_gap(c, motion), Real(0));
+}
+
+/// Tangential force at the end of the step, of a pair that presses with N = `normal` [N].
+ICLOTH_HD inline Vec3r friction_force(const Contact& c, const ContactLaw& law, Vec3r motion,
+                                      Real normal) {
+  const Vec3r trial = tangential(c, c.held - (law.stiffness * c.area) * motion);
+  const Real length = norm(trial), limit = c.friction * normal;
+  return length > limit ? (limit / length) * trial : trial;
+}
+
+/// The motion of a contact in a step [m].
+struct ContactMotion {
+  Vec3r free;  ///< Σ w (x1 − x0) with Δv = 0
+  Vec3r end;   ///< the same as expected (from gravity alone) or as solved
+  bool solved;
+};
+
+/// The normal part and, in `c.friction` > 0, the tangential one, linearised about motion.end.
+/// inverse_mass: Σ w²/m of the free corners [1/kg].
+ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law,
+                                          const ContactMotion& motion, Real inverse_mass) {
   ContactTerm t{};
-  const Real predicted = end_gap(c, end, law.dt);
-  if (!(predicted < c.thickness)) return t;
+  if (!(end_gap(c, motion.end) < c.thickness)) return t;
   t.active = 1;
-  // Along the normal: dt k a (h − gap − dt n·Σ w (v + Δv)).
-  const Real k = law.stiffness * c.area, kn = law.dt * law.dt * k;
-  const Real approach = dot(c.normal, start);
-  const Real push = law.dt * k * (c.thickness - c.gap) - kn * approach;
-  // Across: Coulomb's impulse μN as a drag. Before a solve, the drag with which the expected slide
-  // v̂ (1 − r), r = μN/(m|v̂|), comes out of v̂ / (1 + drag/m); after one, the secant μN/|v|.
-  Real normal_impulse = law.dt * k * (c.thickness - predicted);
-  // Before a solve: what the present compression carries, and what stops the approach.
-  const Real carried = law.dt * k * std::fmax(c.thickness - c.gap, Real(0));
-  const Real stop = std::fmax(-approach, Real(0)) / inverse_mass;
-  if (!solved) normal_impulse = std::fmin(normal_impulse, carried + stop);
-  const Vec3r slide = end - dot(c.normal, end) * c.normal;
-  const Real speed = norm(slide), limit = c.friction * normal_impulse;
-  const Real mass = Real(1) / inverse_mass, stick = Real(1e3) * mass;
-  Real drag = stick;
-  if (limit < stick * speed) {
-    drag = limit / speed;
-    const Real r = drag * inverse_mass;
-    if (!solved) drag = r < Real(0.999) ? drag / (1 - r) : stick;
-  }
-  if (!(limit > 0)) drag = 0;
-  const Vec3r tangential = start - approach * c.normal;
   const Vec3r n = c.normal;
-  const Real d = kn - drag;
-  t.h[0] = drag + d * n.x * n.x, t.h[1] = d * n.x * n.y, t.h[2] = d * n.x * n.z;
-  t.h[3] = drag + d * n.y * n.y, t.h[4] = d * n.y * n.z, t.h[5] = drag + d * n.z * n.z;
-  t.impulse = push * n - drag * tangential;
+  const Real k = law.stiffness * c.area, kdt2 = law.dt * law.dt * k;
+  const Real approach = dot(n, motion.free);
+  t.impulse = (law.dt * k * (c.thickness - c.gap - approach)) * n;
+  Mat3r h = kdt2 * outer(n, n);
+  if (c.friction > 0) {
+    Real normal = normal_force(c, law, motion.end);
+    if (!motion.solved) {
+      // What the present compression carries, and what stops the approach.
+      const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
+      const Real stop = std::fmax(-approach, Real(0)) / (law.dt * law.dt * inverse_mass);
+      normal = std::fmin(normal, carried + stop);
+    }
+    const Real limit = c.friction * normal;
+    const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
+    const Vec3r held = tangential(c, c.held), trial = held - k * end;
+    const Real length = norm(trial);
+    // Before a solve, a sliding force that would turn the motion round means that it ends, unless
+    // the pair is known to be sliding.
+    const bool sliding = motion.solved || norm(held) > Real(0.99) * limit ||
+                         limit * law.dt * law.dt * inverse_mass <= norm(end);
+    const bool slips = length > limit && sliding;
+    if (slips) {
+      const Vec3r d = (Real(1) / length) * trial;
+      const Real turn = limit / length;  // of k: what is left of it across d
+      const Vec3r from = start - end;
+      t.impulse += law.dt * (limit * d - (turn * k) * (from - dot(d, from) * d));
+      h += (turn * kdt2) * (Mat3r::identity(1) - outer(n, n) - outer(d, d));
+    } else {
+      t.impulse += law.dt * (held - k * start);
+      h += kdt2 * (Mat3r::identity(1) - outer(n, n));
+    }
+  }
+  t.h[0] = h.m[0], t.h[1] = h.m[1], t.h[2] = h.m[2];
+  t.h[3] = h.m[4], t.h[4] = h.m[5], t.h[5] = h.m[8];
   return t;
+}
+
+/// Tangential force with which the linear term acts when the motion came out as `motion` [N].
+ICLOTH_HD inline Vec3r applied_friction(const Contact& c, const ContactTerm& t,
+                                        const ContactLaw& law, Vec3r free, Vec3r motion) {
+  const Vec3r dv = (Real(1) / law.dt) * (motion - free);
+  return tangential(c, (Real(1) / law.dt) * (t.impulse - multiply(t, dv)));
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -116,6 +116,10 @@ ICLOTH_HD constexpr Mat3<T> operator+(Mat3<T> a, const Mat3<T>& b) {
   return a += b;
 }
 template <class T>
+ICLOTH_HD constexpr Mat3<T> operator-(const Mat3<T>& a, const Mat3<T>& b) {
+  return a + T(-1) * b;
+}
+template <class T>
 ICLOTH_HD constexpr Mat3<T> transpose(const Mat3<T>& a) {
   return {{a.m[0], a.m[3], a.m[6], a.m[1], a.m[4], a.m[7], a.m[2], a.m[5], a.m[8]}};
 }

@@ -145,51 +145,87 @@ struct AssembleRow {
   }
 };
 
-/// Relative velocity of a contact at the end of the step: what gravity lets expect, or what the
-/// last solve has found.
-struct ContactMotion {
-  View<const Contact> contacts;
-  View<const Vec3r> v, dv;
+/// Motion of the vertices in the step: known, and with what the solve adds.
+struct VertexMotion {
+  View<const Vec3r> free;  ///< x1 − x0 with Δv = 0 [m] (vertices)
+  View<const Vec3r> dv;    ///< (cloth vertices)
   View<const Real> inverse_mass;
-  Vec3r fall_speed;
+  Vec3r fall;  ///< what gravity adds to the motion in the step [m]
+  Real dt;
   bool solved;
 
-  ICLOTH_HD Vec3r end(Index i) const {
-    const Contact& c = contacts[i];
-    Vec3r sum = apply(c.s, v);
+  ICLOTH_HD ContactMotion of(const Contact& c) const {
+    ContactMotion motion{apply(c.s, free), {}, solved};
+    motion.end = motion.free;
     for (int a = 0; a < 4; ++a) {
-      const Index k = c.s.v[a];
-      if (inverse_mass[k] > 0) sum += c.s.w[a] * (solved ? dv[k] : fall_speed);
+      const Index i = c.s.v[a];
+      if (inverse_mass[i] > 0) motion.end += c.s.w[a] * (solved ? dt * dv[i] : fall);
     }
-    return sum;
+    return motion;
   }
 };
 
 struct ContactTerms {
-  ContactMotion motion;
+  VertexMotion motion;
   ContactLaw law;
+  View<const Contact> contacts;
   View<ContactTerm> term;
 
   ICLOTH_HD void operator()(Index i) const {
-    const Contact& c = motion.contacts[i];
+    const Contact& c = contacts[i];
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) mobility += c.s.w[a] * c.s.w[a] * motion.inverse_mass[c.s.v[a]];
-    term[i] = contact_term(c, law, apply(c.s, motion.v), motion.end(i), motion.solved, mobility);
+    term[i] = contact_term(c, law, motion.of(c), mobility);
   }
 };
 
-/// 1 where the solve contradicts what it assumed by so much that it matters: an open contact that
-/// has closed to a quarter of the thickness, or a closed one that pulls from twice the thickness.
-struct Contradicted {
-  ContactMotion motion;
+/// How far a solve contradicts what was assumed for it.
+struct Contradiction {
+  Index contacts;         ///< that open or close by so much that it matters
+  double error, bearing;  ///< friction applied wrongly, and the most there can be [N]
+  ICLOTH_HD friend Contradiction operator+(Contradiction a, Contradiction b) {
+    return {a.contacts + b.contacts, a.error + b.error, a.bearing + b.bearing};
+  }
+  bool matters() const { return contacts > 0 || error > kFrictionError * bearing; }
+  static constexpr double kFrictionError = 0.02;
+};
+
+/// A contact contradicts when it was left out and has closed to a quarter of the thickness, or
+/// pulls from twice the thickness; friction, when it differs from the law at the solved motion.
+struct Contradicts {
+  VertexMotion motion;
   ContactLaw law;
+  View<const Contact> contacts;
   View<const ContactTerm> term;
 
-  ICLOTH_HD Index operator()(Index i) const {
-    const Real thickness = motion.contacts[i].thickness;
-    const Real gap = end_gap(motion.contacts[i], motion.end(i), law.dt);
-    return term[i].active != 0 ? (gap > 2 * thickness ? 1 : 0)
-                               : (gap < Real(0.25) * thickness ? 1 : 0);
+  ICLOTH_HD Contradiction operator()(Index i) const {
+    const Contact& c = contacts[i];
+    const ContactMotion m = motion.of(c);
+    const Real gap = end_gap(c, m.end);
+    Contradiction result{0, 0, 0};
+    if (term[i].active == 0) {
+      result.contacts = gap < Real(0.25) * c.thickness ? 1 : 0;
+      return result;
+    }
+    result.contacts = gap > 2 * c.thickness ? 1 : 0;
+    if (!(c.friction > 0)) return result;
+    const Real normal = normal_force(c, law, m.end);
+    const Vec3r wrong =
+        applied_friction(c, term[i], law, m.free, m.end) - friction_force(c, law, m.end, normal);
+    result.error = static_cast<double>(norm(wrong));
+    result.bearing = static_cast<double>(c.friction * normal);
+    return result;
+  }
+};
+
+/// x1 − x0 of all vertices when the cloth keeps its velocity.
+struct FreeMotion {
+  View<const Vec3r> x0, x1, v;
+  View<Vec3r> motion;
+  Index cloth_vertices;
+  Real dt;
+  ICLOTH_HD void operator()(Index i) const {
+    motion[i] = i < cloth_vertices ? dt * v[i] : x1[i] - x0[i];
   }
 };
 
@@ -337,12 +373,20 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
                           contact_terms_.view(),      incidence.first(),
                           incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
-  ContactMotion motion{contacts.view(),          s.v.view(), dv_.view(), s.inverse_mass.view(),
-                       step.dt * step.gravity(), false};
+  free_motion_.resize(mesh.vertices);
+  for_each("implicit.free_motion", mesh.vertices,
+           FreeMotion{s.x0.view(), s.x1.view(), s.v.view(), free_motion_.view(),
+                      mesh.cloth_vertices, step.dt});
+  VertexMotion motion{free_motion_.view(),
+                      dv_.view(),
+                      s.inverse_mass.view(),
+                      step.dt * step.dt * step.gravity(),
+                      step.dt,
+                      false};
   // The repulsion acts one way only; which contacts close is known for certain after a solve.
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
-             ContactTerms{motion, law, contact_terms_.view()});
+             ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
     for_each("implicit.finish_rows", mesh.cloth_vertices,
              FinishRow{matrix_.row_first.view(), incidence.first(), incidence.entries(),
                        matrix_.value.view(), contacts.view(), contact_terms_.view(),
@@ -356,9 +400,10 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
     ++step.report.newton_iterations;
     motion.solved = true;
-    if (reduce("implicit.contradicted", contacts.size(), Index{0},
-               Contradicted{motion, law, contact_terms_.view()}, Sum{}) == 0)
-      break;
+    const Contradiction contradiction =
+        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
+               Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
+    if (!contradiction.matters()) break;
   }
   for_each(
       "implicit.move", mesh.cloth_vertices,

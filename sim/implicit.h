@@ -44,6 +44,7 @@ class Implicit {
   Array<ContactTerm> contact_terms_;
   Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
+  Array<Vec3r> free_motion_;             ///< x1 − x0 with Δv = 0 [m] (vertices)
   LinearSolver solver_;
 };
 

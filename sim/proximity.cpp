@@ -65,6 +65,7 @@ struct ContactMaker {
     if (same_cloth && !touches_obstacle && norm2(apply(c.s, rest)) < 4 * thickness * thickness)
       return false;
     c.thickness = thickness;
+    c.held = Vec3r{};
     c.friction = touches_obstacle ? friction_obstacle : friction_cloth;
     return true;
   }
@@ -163,6 +164,41 @@ struct RampThickness {
   }
 };
 
+/// The force that a pair held at the end of the last substep, by bisection.
+struct RecallFriction {
+  View<const HeldForce> held;
+  View<Contact> contacts;
+
+  ICLOTH_HD void operator()(Index i) const {
+    Contact& c = contacts[i];
+    Index low = 0, high = held.size();
+    while (low < high) {
+      const Index middle = low + (high - low) / 2;
+      if (held[middle].key < c.key)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    if (low < held.size() && held[low].key == c.key) c.held = tangential(c, held[low].force);
+  }
+};
+
+struct KeepFriction {
+  View<const Contact> contacts;
+  View<const Vec3r> x0, x1;
+  ContactLaw law;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Contact& c = contacts[i];
+    Vec3r motion{};
+    for (int a = 0; a < 4; ++a) motion += c.s.w[a] * (x1[c.s.v[a]] - x0[c.s.v[a]]);
+    const Real normal = normal_force(c, law, motion);
+    if (c.friction > 0 && normal > 0)
+      emit(HeldForce{c.key, friction_force(c, law, motion, normal)});
+  }
+};
+
 constexpr double kRampTime = 0.2;  // [s]
 
 }  // namespace
@@ -181,6 +217,18 @@ void Proximity::ramp_thickness(const StepContext& step) {
   const double share = std::fmin(step.time / kRampTime, 1.0);
   for_each("proximity.ramp", contacts_.size(),
            RampThickness{start_gap_.view(), contacts_.view(), static_cast<Real>(share)});
+}
+
+void Proximity::keep_friction(const StepContext& step) {
+  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
+  collect("proximity.keep_friction", contacts_.size(),
+          KeepFriction{contacts_.view(), step.state.x0.view(), step.state.x1.view(), law}, held_);
+}
+
+void Proximity::recall_friction() {
+  if (!held_.empty())
+    for_each("proximity.recall_friction", contacts_.size(),
+             RecallFriction{held_.view(), contacts_.view()});
 }
 
 void Proximity::clear(StepContext& step) {
@@ -218,6 +266,7 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
           FindEdgeEdge{maker, ee.view(), mesh.edge.view(), mesh.edge_area.view()}, found_);
   append_sorted_("proximity.sort", found_, contacts_);
 
+  recall_friction();
   slots_.resize(contacts_.size());
   for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots_.view()});
   incidence_.build(slots_.view(), mesh.cloth_vertices);

@@ -8,17 +8,30 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// Tangential force that a pair held at the end of a substep, with which it goes on.
+struct HeldForce {
+  std::uint64_t key;  ///< of the pair
+  Vec3r force;        ///< [N]
+};
+
 class Proximity {
  public:
   /// Finds the contacts of the step at x0, sorted by pair key.
   void find(StepContext& step, const BroadPhase& broad_phase);
   /// No contacts in this step.
   void clear(StepContext& step);
+  /// Keeps what the contacts hold after the accepted motion x0 → x1, for the next find.
+  void keep_friction(const StepContext& step);
+
+  /// Sorted by pair; what the friction of the next step starts from.
+  const Array<HeldForce>& held() const { return held_; }
+  Array<HeldForce>& held() { return held_; }
 
   const Array<Contact>& contacts() const { return contacts_; }
   const Incidence& incidence() const { return incidence_; }
 
  private:
+  void recall_friction();
   void note_start_gaps(const StepContext& step);
   void ramp_thickness(const StepContext& step);
 
@@ -27,6 +40,7 @@ class Proximity {
   SortedAppend append_sorted_;
   Array<Int4> slots_;
   Incidence incidence_;
+  Array<HeldForce> held_;  ///< of pairs with friction, keep_friction
   /// Smallest gap of each vertex in the start state, at most h [m] (cloth_vertices); empty when
   /// nothing starts closer than h. note_start_gaps
   Array<Real> start_gap_;

@@ -18,13 +18,20 @@ enum class Build { cpu32, cpu64, cuda32 };
 
 std::string_view build_name(Build build);
 
+/// Tangential force that a pair in contact holds, see kernels/contact.h.
+struct PairForce {
+  std::uint64_t pair = 0;  ///< key of the pair
+  Vec3d force;             ///< [N]
+};
+
 /// State of a simulation, enough to go on from. Positions hold all vertices (cloths in scene
 /// order, then obstacles), velocities likewise.
 struct Snapshot {
   std::int64_t step = 0;
   double time = 0;
-  std::vector<Vec3d> positions;   ///< [m] (V)
-  std::vector<Vec3d> velocities;  ///< [m/s] (V)
+  std::vector<Vec3d> positions;     ///< [m] (V)
+  std::vector<Vec3d> velocities;    ///< [m/s] (V)
+  std::vector<PairForce> friction;  ///< sorted by pair
 };
 
 class Simulator {

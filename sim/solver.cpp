@@ -172,7 +172,9 @@ void Solver::begin_substep(double start, double dt) {
   }
 }
 
-void Solver::accept_substep(double dt) {
+void Solver::accept_substep(double start, double dt, StepReport& report) {
+  proximity_.keep_friction(
+      StepContext{mesh_, parameters_, state_, report, static_cast<Real>(dt), start});
   for_each("step.velocities", mesh_.cloth_vertices,
            EndVelocity{state_.x0.view(), state_.x1.view(), state_.inverse_mass.view(),
                        state_.v.view(), real(1 / dt)});
@@ -194,11 +196,13 @@ int Solver::travel_level() const {
 void Solver::save_start() {
   start_x_.copy_from(state_.x1);
   start_v_.copy_from(state_.v);
+  start_held_.copy_from(proximity_.held());
 }
 
 void Solver::back_to_start() {
   state_.x1.copy_from(start_x_);
   state_.v.copy_from(start_v_);
+  proximity_.held().copy_from(start_held_);
   broad_phase_.invalidate();
 }
 
@@ -280,6 +284,8 @@ Snapshot Solver::snapshot() const {
   s.time = time_;
   for (const Vec3r& x : state_.x1.download()) s.positions.push_back(convert<double>(x));
   for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
+  for (const HeldForce& held : proximity_.held().download())
+    s.friction.push_back({held.key, convert<double>(held.force)});
   return s;
 }
 
@@ -295,6 +301,9 @@ void Solver::restore(const Snapshot& snapshot) {
   upload_as(state_.x1, snapshot.positions, to_real);
   upload_as(state_.v, snapshot.velocities, to_real);
   state_.x0.copy_from(state_.x1);
+  upload_as(proximity_.held(), snapshot.friction, [](const PairForce& held) {
+    return HeldForce{held.pair, to_real(held.force)};
+  });
   hands_.clear();
   broad_phase_.invalidate();
 }

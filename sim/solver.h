@@ -43,7 +43,7 @@ class Solver final : public Simulator {
   bool resolve_by_rollback(StepContext& step);
   void find_impacts(StepContext& step, bool first_round);
   void begin_substep(double start, double dt);
-  void accept_substep(double dt);
+  void accept_substep(double start, double dt, StepReport& report);
   void report_offending(StepReport& report) const;
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
@@ -64,6 +64,7 @@ class Solver final : public Simulator {
   Topology mesh_;
   State state_;
   Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
+  Array<HeldForce> start_held_;     ///< likewise
   Hands hands_;
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions
