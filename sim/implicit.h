@@ -7,23 +7,12 @@
 // coefficients frozen; d: stiffness-proportional damping [s].
 #pragma once
 
+#include "sim/elastic_terms.h"
 #include "sim/linear_solver.h"
 #include "sim/proximity.h"
 #include "sim/state.h"
 
 namespace icloth::ICLOTH_BUILD {
-
-/// One face's share of the system.
-struct FaceTerm {
-  Mat3r block[6];    ///< (0,0) (0,1) (0,2) (1,1) (1,2) (2,2) [kg]
-  Vec3r impulse[3];  ///< right-hand side [N·s]
-};
-
-/// One hinge's share: blocks k g_a g_bᵀ, impulses s g_a.
-struct HingeTerm {
-  Vec3r gradient[4];
-  Real k, s;
-};
 
 class Implicit {
  public:
