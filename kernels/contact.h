@@ -21,6 +21,7 @@ struct Contact {
   Stencil s;       ///< gap vector g(x0) = Σ w x0
   Vec3r normal;    ///< unit, along g
   Vec3r held;      ///< tangential force at the end of the last substep [N]
+  Index stuck;     ///< 1: it stuck then; 0: it slid, or was not in contact
   Real gap;        ///< |g| [m]
   Real area;       ///< of the features [m²]
   Real friction;   ///< Coulomb coefficient
@@ -31,6 +32,7 @@ struct Contact {
 struct ContactTerm {
   Real h[6];      ///< symmetric: xx xy xz yy yz zz
   Vec3r impulse;  ///< Σ over corners with their weights
+  Vec3r sliding;  ///< direction of the friction of a sliding pair, zero of one that sticks
   Index active;   ///< 0: the pair stays further apart than h and adds nothing
 };
 
@@ -59,12 +61,18 @@ ICLOTH_HD inline Real normal_force(const Contact& c, const ContactLaw& law, Vec3
   return law.stiffness * c.area * std::fmax(c.thickness - end_gap(c, motion), Real(0));
 }
 
-/// Tangential force at the end of the step, of a pair that presses with N = `normal` [N].
-ICLOTH_HD inline Vec3r friction_force(const Contact& c, const ContactLaw& law, Vec3r motion,
+struct Friction {
+  Vec3r force;   ///< tangential [N]
+  bool sliding;  ///< at Coulomb's limit
+};
+
+/// Friction at the end of the step, of a pair that presses with N = `normal` [N].
+ICLOTH_HD inline Friction friction_of(const Contact& c, const ContactLaw& law, Vec3r motion,
                                       Real normal) {
   const Vec3r trial = tangential(c, c.held - (law.stiffness * c.area) * motion);
   const Real length = norm(trial), limit = c.friction * normal;
-  return length > limit ? (limit / length) * trial : trial;
+  if (length > limit) return {(limit / length) * trial, true};
+  return {trial, false};
 }
 
 /// The motion of a contact in a step [m].
@@ -75,9 +83,10 @@ struct ContactMotion {
 };
 
 /// The normal part and, in `c.friction` > 0, the tangential one, linearised about motion.end.
-/// inverse_mass: Σ w²/m of the free corners [1/kg].
+/// inverse_mass: Σ w²/m of the free corners [1/kg]; last: the term that motion was solved with.
 ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law,
-                                          const ContactMotion& motion, Real inverse_mass) {
+                                          const ContactMotion& motion, Real inverse_mass,
+                                          const ContactTerm& last) {
   ContactTerm t{};
   if (!(end_gap(c, motion.end) < c.thickness)) return t;
   t.active = 1;
@@ -87,10 +96,10 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
   t.impulse = (law.dt * k * (c.thickness - c.gap - approach)) * n;
   Mat3r h = kdt2 * outer(n, n);
   if (c.friction > 0) {
+    const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
     Real normal = normal_force(c, law, motion.end);
     if (!motion.solved) {
       // What the present compression carries, and what stops the approach.
-      const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
       const Real stop = std::fmax(-approach, Real(0)) / (law.dt * law.dt * inverse_mass);
       normal = std::fmin(normal, carried + stop);
     }
@@ -98,13 +107,16 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
     const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
     const Vec3r held = tangential(c, c.held), trial = held - k * end;
     const Real length = norm(trial);
-    // Before a solve, a sliding force that would turn the motion round means that it ends, unless
-    // the pair is known to be sliding.
-    const bool sliding = motion.solved || norm(held) > Real(0.99) * limit ||
-                         limit * law.dt * law.dt * inverse_mass <= norm(end);
-    const bool slips = length > limit && sliding;
+    // A pair that is found to slide one way when it was taken to slide the other way comes to rest
+    // within the step. Before a solve, one that did not slide is expected to stay, and any other to
+    // come to rest where its sliding force alone would turn its expected motion round.
+    const bool turns = motion.solved
+                           ? dot(last.sliding, trial) < 0
+                           : c.stuck != 0 || limit * law.dt * law.dt * inverse_mass > norm(end);
+    const bool slips = length > limit && !turns;
     if (slips) {
       const Vec3r d = (Real(1) / length) * trial;
+      t.sliding = d;
       const Real turn = limit / length;  // of k: what is left of it across d
       const Vec3r from = start - end;
       t.impulse += law.dt * (limit * d - (turn * k) * (from - dot(d, from) * d));

@@ -86,7 +86,7 @@ struct ContactTerms {
     const Contact& c = contacts[i];
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) mobility += c.s.w[a] * c.s.w[a] * motion.inverse_mass[c.s.v[a]];
-    term[i] = contact_term(c, law, motion.of(c), mobility);
+    term[i] = contact_term(c, law, motion.of(c), mobility, term[i]);
   }
 };
 
@@ -122,7 +122,7 @@ struct Contradicts {
     if (!(c.friction > 0)) return result;
     const Real normal = normal_force(c, law, m.end);
     const Vec3r wrong =
-        applied_friction(c, term[i], law, m.free, m.end) - friction_force(c, law, m.end, normal);
+        applied_friction(c, term[i], law, m.free, m.end) - friction_of(c, law, m.end, normal).force;
     result.error = static_cast<double>(norm(wrong));
     result.bearing = static_cast<double>(c.friction * normal);
     return result;
@@ -314,6 +314,10 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     const Contradiction contradiction =
         reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
                Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
+    if (getenv("DBG"))
+      fprintf(stderr, "pass %d: contra %d err %g bearing %g its %d n %d\n", pass,
+              contradiction.contacts, contradiction.error, contradiction.bearing,
+              solution.iterations, (int)contacts.size());
     if (!contradiction.matters()) break;
   }
   for_each(

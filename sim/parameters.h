@@ -37,7 +37,7 @@ struct Parameters {
   // implicit
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
-  int contact_passes = 2;
+  int contact_passes = 4;
   // broad phase
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
   int rebuild_interval = 16;

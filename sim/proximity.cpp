@@ -66,6 +66,7 @@ struct ContactMaker {
       return false;
     c.thickness = thickness;
     c.held = Vec3r{};
+    c.stuck = 0;
     c.friction = touches_obstacle ? friction_obstacle : friction_cloth;
     return true;
   }
@@ -179,7 +180,9 @@ struct RecallFriction {
       else
         high = middle;
     }
-    if (low < held.size() && held[low].key == c.key) c.held = tangential(c, held[low].force);
+    if (low == held.size() || held[low].key != c.key) return;
+    c.held = tangential(c, held[low].force);
+    c.stuck = held[low].stuck;
   }
 };
 
@@ -194,8 +197,9 @@ struct KeepFriction {
     Vec3r motion{};
     for (int a = 0; a < 4; ++a) motion += c.s.w[a] * (x1[c.s.v[a]] - x0[c.s.v[a]]);
     const Real normal = normal_force(c, law, motion);
-    if (c.friction > 0 && normal > 0)
-      emit(HeldForce{c.key, friction_force(c, law, motion, normal)});
+    if (!(c.friction > 0 && normal > 0)) return;
+    const Friction friction = friction_of(c, law, motion, normal);
+    emit(HeldForce{c.key, friction.force, friction.sliding ? 0 : 1});
   }
 };
 

@@ -12,6 +12,7 @@ namespace icloth::ICLOTH_BUILD {
 struct HeldForce {
   std::uint64_t key;  ///< of the pair
   Vec3r force;        ///< [N]
+  Index stuck;        ///< 0: the pair was sliding
 };
 
 class Proximity {

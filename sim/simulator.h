@@ -22,6 +22,7 @@ std::string_view build_name(Build build);
 struct PairForce {
   std::uint64_t pair = 0;  ///< key of the pair
   Vec3d force;             ///< [N]
+  bool stuck = false;      ///< it stuck, else it was sliding
 };
 
 /// State of a simulation, enough to go on from. Positions hold all vertices (cloths in scene

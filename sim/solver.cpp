@@ -285,7 +285,7 @@ Snapshot Solver::snapshot() const {
   for (const Vec3r& x : state_.x1.download()) s.positions.push_back(convert<double>(x));
   for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
   for (const HeldForce& held : proximity_.held().download())
-    s.friction.push_back({held.key, convert<double>(held.force)});
+    s.friction.push_back({held.key, convert<double>(held.force), held.stuck != 0});
   return s;
 }
 
@@ -302,7 +302,7 @@ void Solver::restore(const Snapshot& snapshot) {
   upload_as(state_.v, snapshot.velocities, to_real);
   state_.x0.copy_from(state_.x1);
   upload_as(proximity_.held(), snapshot.friction, [](const PairForce& held) {
-    return HeldForce{held.pair, to_real(held.force)};
+    return HeldForce{held.pair, to_real(held.force), held.stuck ? 1 : 0};
   });
   hands_.clear();
   broad_phase_.invalidate();
