@@ -26,38 +26,55 @@ struct Wind {
   Real density, drag;  ///< [kg/m³], tangential [kg/(m² s)]
 };
 
+/// Where the elastic forces are linearised: f(x1) ≈ f(at) − K(at) (x1 − at), stiffness damping with
+/// the time constant d included, x1 = at + ahead + dt Δv.
+struct Linearization {
+  View<const Vec3r> start;  ///< x0; the coefficients of the fabric are those of this shape [m]
+  View<const Vec3r> at;     ///< [m]
+  View<const Vec3r> ahead;  ///< [m]
+  View<const Vec3r> v;      ///< before the step [m/s]
+  Real dt;                  ///< [s]
+
+  /// What K is multiplied with on the right-hand side, ahead + d v [m].
+  ICLOTH_HD Vec3r lead(Index i, Real damping) const { return ahead[i] + damping * v[i]; }
+};
+
 struct MembraneTerms {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
   View<const Real> area;
   View<const Index> face_fabric;
   View<const Fabric> fabric;
-  View<const Vec3r> x, v;
+  Linearization point;
   View<FaceTerm> term;
-  Real dt, damping_extra;
+  Real damping_extra;
   Wind wind;
 
   ICLOTH_HD void operator()(Index i) const {
     const Int3 f = face[i];
     const Fabric& cloth = fabric[face_fabric[i]];
-    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
-    const Vec3r vs[3] = {v[f.v[0]], v[f.v[1]], v[f.v[2]]};
-    const FaceFrame frame = face_frame(xs, inverse[i].m);
-    const Sym2 g = green_strain(frame);
-    const Stiffness k = stiffness_at(cloth, g);
-    const Sym2 s = stress(k, g), positive = positive_part(s);
-    const Real delay = dt + cloth.damping + damping_extra;
+    const auto corners = [&](View<const Vec3r> x, Vec3r out[3]) {
+      for (int a = 0; a < 3; ++a) out[a] = x[f.v[a]];
+    };
+    Vec3r start[3], at[3], v[3];
+    corners(point.start, start);
+    corners(point.at, at);
+    corners(point.v, v);
+    const FaceFrame frame = face_frame(at, inverse[i].m);
+    const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
+    const Sym2 s = stress(k, green_strain(frame)), positive = positive_part(s);
+    const Real dt = point.dt, damping = cloth.damping + damping_extra;
     FaceTerm t;
     for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s, area[i], a);
     for (int a = 0; a < 3; ++a) {
       for (int b = a; b < 3; ++b) {
-        const Mat3r h = (dt * delay) * membrane_block(frame, k, positive, area[i], a, b);
-        t.block[block_slot(a, b)] = h;
-        t.impulse[a] -= h * vs[b];
-        if (b > a) t.impulse[b] -= transpose(h) * vs[a];
+        const Mat3r h = dt * membrane_block(frame, k, positive, area[i], a, b);
+        t.block[block_slot(a, b)] = (dt + damping) * h;
+        t.impulse[a] -= h * point.lead(f.v[b], damping);
+        if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
       }
     }
-    add_air(t, xs, vs);
+    add_air(t, at, v);
     term[i] = t;
   }
 
@@ -74,9 +91,9 @@ struct MembraneTerms {
     const Vec3r force =
         (share * wind.density * std::fabs(vn) * vn) * n + (share * wind.drag) * (relative - vn * n);
     const Real stiff = 2 * share * wind.density * std::fabs(vn), drag = share * wind.drag;
-    const Mat3r h = dt * ((stiff - drag) * outer(n, n) + Mat3r::identity(drag));
+    const Mat3r h = point.dt * ((stiff - drag) * outer(n, n) + Mat3r::identity(drag));
     for (int a = 0; a < 3; ++a) {
-      t.impulse[a] += dt * force;
+      t.impulse[a] += point.dt * force;
       t.block[block_slot(a, a)] += h;
     }
   }
@@ -85,24 +102,24 @@ struct MembraneTerms {
 struct BendingTerms {
   View<const HingeRest> hinge;
   View<const Fabric> fabric;
-  View<const Vec3r> x, v;
+  Linearization point;
   View<HingeTerm> term;
-  Real dt, damping_extra;
+  Real damping_extra;
 
   ICLOTH_HD void operator()(Index i) const {
     const HingeRest& h = hinge[i];
-    Vec3r xs[4];
-    for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
-    const HingeAngle angle = hinge_angle(xs);
+    Vec3r start[4], at[4];
+    for (int a = 0; a < 4; ++a) start[a] = point.start[h.v.v[a]], at[a] = point.at[h.v.v[a]];
+    const HingeAngle angle = hinge_angle(at);
     const Fabric &f0 = fabric[h.fabric0], &f1 = fabric[h.fabric1];
-    const Real k = hinge_stiffness(f0, f1, h, angle.theta);
-    const Real delay = dt + std::fmin(f0.damping, f1.damping) + damping_extra;
-    Real rate = 0;
-    for (int a = 0; a < 4; ++a) rate += dot(angle.gradient[a], v[h.v.v[a]]);
+    const Real k = hinge_stiffness(f0, f1, h, hinge_angle(start).theta);
+    const Real damping = std::fmin(f0.damping, f1.damping) + damping_extra;
+    Real lead = 0;
+    for (int a = 0; a < 4; ++a) lead += dot(angle.gradient[a], point.lead(h.v.v[a], damping));
     HingeTerm t;
     for (int a = 0; a < 4; ++a) t.gradient[a] = angle.gradient[a];
-    t.k = dt * delay * k;
-    t.s = -dt * k * (angle.theta - h.angle + delay * rate);
+    t.k = point.dt * (point.dt + damping) * k;
+    t.s = -point.dt * k * (angle.theta - h.angle + lead);
     term[i] = t;
   }
 };

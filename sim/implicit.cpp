@@ -172,12 +172,38 @@ struct FinishRow {
 };
 
 struct MoveVertices {
-  View<const Vec3r> x0, v, dv;
+  View<const Vec3r> x0, free, dv;
   View<Vec3r> x1, candidate;
   Real dt;
   ICLOTH_HD void operator()(Index i) const {
-    x1[i] = x0[i] + dt * (v[i] + dv[i]);
+    x1[i] = x0[i] + (free[i] + dt * dv[i]);
     candidate[i] = x1[i];
+  }
+};
+
+/// From the solution to the end of the step as the next iteration will solve it.
+struct Ahead {
+  View<const Vec3r> dv;
+  View<Vec3r> ahead;
+  Real dt;
+  ICLOTH_HD void operator()(Index i) const { ahead[i] = -dt * dv[i]; }
+};
+
+/// Strain of second order in the motion since the point of linearisation, ½ ΔFᵀΔF at its largest.
+struct UnseenStrain {
+  View<const Int3> face;
+  View<const Topology::Inverse> inverse;
+  Linearization point;
+  View<const Vec3r> dv;
+
+  ICLOTH_HD Real operator()(Index i) const {
+    Vec3r motion[3];
+    for (int a = 0; a < 3; ++a) {
+      const Index v = face[i].v[a];
+      motion[a] = point.ahead[v] + point.dt * dv[v];
+    }
+    const FaceFrame change = face_frame(motion, inverse[i].m);
+    return Real(0.5) * std::fmax(norm2(change.fu), norm2(change.fv));
   }
 };
 
@@ -238,7 +264,7 @@ void Implicit::set_up(const World& world) {
   hinge_source_.upload(hinge_source);
 }
 
-void Implicit::assemble(StepContext& step) {
+void Implicit::assemble(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Parameters& p = step.parameters;
@@ -252,11 +278,11 @@ void Implicit::assemble(StepContext& step) {
   rhs_.resize(mesh.cloth_vertices);
   for_each("implicit.membrane", mesh.cloth_faces,
            MembraneTerms{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
-                         mesh.face_fabric.view(), mesh.fabric.view(), s.x0.view(), s.v.view(),
-                         face_terms_.view(), step.dt, damping_extra, wind});
+                         mesh.face_fabric.view(), mesh.fabric.view(), point, face_terms_.view(),
+                         damping_extra, wind});
   for_each("implicit.bending", mesh.hinge_count,
-           BendingTerms{mesh.hinge.view(), mesh.fabric.view(), s.x0.view(), s.v.view(),
-                        hinge_terms_.view(), step.dt, damping_extra});
+           BendingTerms{mesh.hinge.view(), mesh.fabric.view(), point, hinge_terms_.view(),
+                        damping_extra});
   for_each(
       "implicit.assemble", mesh.cloth_vertices,
       AssembleRow{matrix_.row_first.view(), matrix_.column.view(), face_source_first_.view(),
@@ -268,15 +294,39 @@ void Implicit::assemble(StepContext& step) {
 
 void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   const Topology& mesh = step.mesh;
+  const Parameters& p = step.parameters;
+  State& s = step.state;
+  dv_.resize(mesh.cloth_vertices + kPadding);
+  dv_.fill(Vec3r{});
+  free_motion_.resize(mesh.vertices);
+  for_each("implicit.free_motion", mesh.vertices,
+           FreeMotion{s.x0.view(), s.x1.view(), s.v.view(), free_motion_.view(),
+                      mesh.cloth_vertices, step.dt});
+  Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), s.v.view(), step.dt};
+  for (int iteration = 0;; ++iteration) {
+    assemble(step, point);
+    solve_with_contacts(step, proximity, iteration > 0);
+    const Real error = move(step, point);
+    if (iteration + 1 >= p.newton_iterations || !(error > static_cast<Real>(p.newton_tolerance)))
+      break;
+    at_.copy_from(s.candidate);
+    ahead_.resize(mesh.cloth_vertices);
+    for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), step.dt});
+    point.at = at_.view();
+    point.ahead = ahead_.view();
+  }
+}
+
+/// Solves for Δv. The repulsion acts one way only, and friction sticks or slides: which contacts
+/// close and which slide is known for certain after a solve. `solved`: dv_ is a solution already.
+void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved) {
+  const Topology& mesh = step.mesh;
   State& s = step.state;
   const Array<Contact>& contacts = proximity.contacts();
-  assemble(step);
+  const Incidence& incidence = proximity.incidence();
   contact_terms_.resize(contacts.size());
   inverse_diagonal_.resize(mesh.cloth_vertices);
   contact_rhs_.resize(mesh.cloth_vertices);
-  dv_.resize(mesh.cloth_vertices + kPadding);
-  dv_.fill(Vec3r{});
-  const Incidence& incidence = proximity.incidence();
   const SystemView system{matrix_.row_first.view(),   matrix_.column.view(),
                           matrix_.lower_first.view(), matrix_.lower_column.view(),
                           matrix_.lower_block.view(), matrix_.value.view().data()->m,
@@ -284,17 +334,12 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
                           contact_terms_.view(),      incidence.first(),
                           incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
-  free_motion_.resize(mesh.vertices);
-  for_each("implicit.free_motion", mesh.vertices,
-           FreeMotion{s.x0.view(), s.x1.view(), s.v.view(), free_motion_.view(),
-                      mesh.cloth_vertices, step.dt});
   VertexMotion motion{free_motion_.view(),
                       dv_.view(),
                       s.inverse_mass.view(),
                       step.dt * step.dt * step.gravity(),
                       step.dt,
-                      false};
-  // The repulsion acts one way only; which contacts close is known for certain after a solve.
+                      solved};
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
@@ -314,15 +359,20 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     const Contradiction contradiction =
         reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
                Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
-    if (getenv("DBG"))
-      fprintf(stderr, "pass %d: contra %d err %g bearing %g its %d n %d\n", pass,
-              contradiction.contacts, contradiction.error, contradiction.bearing,
-              solution.iterations, (int)contacts.size());
     if (!contradiction.matters()) break;
   }
-  for_each(
-      "implicit.move", mesh.cloth_vertices,
-      MoveVertices{s.x0.view(), s.v.view(), dv_.view(), s.x1.view(), s.candidate.view(), step.dt});
+}
+
+/// Writes x1; returns the largest strain that the linearisation did not see.
+Real Implicit::move(StepContext& step, const Linearization& point) {
+  const Topology& mesh = step.mesh;
+  State& s = step.state;
+  for_each("implicit.move", mesh.cloth_vertices,
+           MoveVertices{s.x0.view(), free_motion_.view(), dv_.view(), s.x1.view(),
+                        s.candidate.view(), step.dt});
+  if (step.parameters.newton_iterations == 1) return 0;
+  return reduce("implicit.unseen_strain", mesh.cloth_faces, Real(0),
+                UnseenStrain{mesh.face.view(), mesh.face_inverse.view(), point, dv_.view()}, Max{});
 }
 
 }  // namespace icloth::ICLOTH_BUILD

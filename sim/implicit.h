@@ -23,7 +23,9 @@ class Implicit {
   void integrate(StepContext& step, const Proximity& proximity);
 
  private:
-  void assemble(StepContext& step);
+  void assemble(StepContext& step, const Linearization& point);
+  void solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved);
+  Real move(StepContext& step, const Linearization& point);
 
   BlockMatrix matrix_;
   /// Which element blocks add up to a stored block: 9·face + 3a + b, 16·hinge + 4a + b.
@@ -34,6 +36,7 @@ class Implicit {
   Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
   Array<Vec3r> free_motion_;             ///< x1 − x0 with Δv = 0 [m] (vertices)
+  Array<Vec3r> at_, ahead_;  ///< of the linearisation, from the second iteration (cloth_vertices)
   LinearSolver solver_;
 };
 

@@ -38,6 +38,8 @@ struct Parameters {
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
   int contact_passes = 4;
+  int newton_iterations = 1;
+  double newton_tolerance = 1e-3;
   // broad phase
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
   int rebuild_interval = 16;
