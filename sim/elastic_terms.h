@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/bending.h"
+#include "kernels/strain_limit.h"
 #include "sim/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -45,19 +46,25 @@ struct MembraneTerms {
     const FaceFrame frame = face_frame(xs, inverse[i].m);
     const Sym2 g = green_strain(frame);
     const Stiffness k = stiffness_at(cloth, g);
-    const Sym2 s = stress(k, g), positive = positive_part(s);
+    const StrainLimit limit = strain_limit(cloth, g);
+    Sym2 s = stress(k, g);
+    if (limit.active) s = s + limit_stress(limit);
+    const Sym2 positive = positive_part(s);
+    const FaceFrame principal = limit.active ? principal_frame(frame, limit) : frame;
     const Real delay = dt + cloth.damping + damping_extra;
     FaceTerm t;
     for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s, area[i], a);
     for (int a = 0; a < 3; ++a) {
       for (int b = a; b < 3; ++b) {
-        const Mat3r h = (dt * delay) * membrane_block(frame, k, positive, area[i], a, b);
+        Mat3r h = membrane_block(frame, k, positive, area[i], a, b);
+        if (limit.active) h += limit_block(principal, limit, area[i], a, b);
+        h = (dt * delay) * h;
         t.block[block_slot(a, b)] = h;
         t.impulse[a] -= h * vs[b];
         if (b > a) t.impulse[b] -= transpose(h) * vs[a];
       }
     }
-    add_air(t, xs, vs);
+    if (wind.density > 0 || wind.drag > 0) add_air(t, xs, vs);
     term[i] = t;
   }
 
