@@ -1,32 +1,9 @@
-// In-plane forces of one face: Green strain, orthotropic or measured stress, PSD Hessian.
-//
-// Law and data: Wang, O'Brien, Ramamoorthi 2011, "Data-driven elastic models for cloth". Stress is
-// S = C(strain)·ε with ε = FᵀF − I = 2G, hence k = 2c acts on the Green strain G. k is frozen
-// during a step: with the secant k the law has no energy, with a frozen k the step minimises one.
+// In-plane forces of one face: Green strain, stress, PSD Hessian for a frozen stiffness.
 #pragma once
 
-#include "kernels/angle.h"
-#include "kernels/stencil.h"
+#include "kernels/fabric.h"
 
 namespace icloth::ICLOTH_BUILD {
-
-/// Fabric as the kernels see it; see sim/material.h.
-struct Fabric {
-  Real stretching[6][4];  ///< c11 c12 c22 c33 [N/m]
-  Real bending[3][5];     ///< [N·m]
-  Real damping;           ///< stiffness-proportional [s]
-  bool measured;
-};
-
-/// Stiffness against Green strain [N/m].
-struct Stiffness {
-  Real k11, k12, k22, k33;
-};
-
-/// Symmetric 2×2: strain or stress in material axes u (weft), v (warp).
-struct Sym2 {
-  Real uu, uv, vv;
-};
 
 /// Deformation gradient columns and the derivative weights of one face.
 struct FaceFrame {
@@ -49,52 +26,6 @@ ICLOTH_HD inline Sym2 green_strain(const FaceFrame& f) {
   const Real half = Real(0.5);
   return {half * (dot(f.fu, f.fu) - Real(1)), half * dot(f.fu, f.fv),
           half * (dot(f.fv, f.fv) - Real(1))};
-}
-
-/// Largest principal stretch squared, the largest eigenvalue of FᵀF = 2G + I.
-ICLOTH_HD inline Real largest_stretch2(Sym2 g) {
-  const Real c11 = 2 * g.uu + 1, c22 = 2 * g.vv + 1, c12 = 2 * g.uv;
-  const Real d = c11 - c22;
-  return Real(0.5) * (c11 + c22 + std::sqrt(d * d + 4 * c12 * c12));
-}
-
-/// The measured law: bilinear between the rows in direction and in stretch up to 1/6.
-ICLOTH_HD inline Stiffness measured_stiffness(const Fabric& fabric, Sym2 g) {
-  const Real pi = Real(3.14159265358979323846);
-  const Real c12 = 2 * g.uv, lambda = largest_stretch2(g);
-  const Real across = lambda - (2 * g.vv + 1);
-  Real phi;
-  if (c12 == 0)
-    phi = g.uu >= g.vv ? Real(0) : pi / 2;
-  else
-    phi = angle_of(std::fabs(c12), std::fabs(across));
-  const Real a = std::fmin(8 * phi / pi, Real(4) - Real(1e-6));
-  const int row = a < 0 ? 0 : (a >= 3 ? 3 : static_cast<int>(a));
-  const Real along = a - static_cast<Real>(row);
-  const Real stretch = std::sqrt(std::fmax(lambda, Real(0)));
-  const Real s = std::fmin(std::fmax(6 * (stretch - 1), Real(0)), Real(1) - Real(1e-6));
-  Real c[4];
-  for (int k = 0; k < 4; ++k) {
-    const Real far =
-        (1 - along) * fabric.stretching[1 + row][k] + along * fabric.stretching[2 + row][k];
-    c[k] = 2 * std::fmax((1 - s) * fabric.stretching[0][k] + s * far, Real(0));
-  }
-  return {c[0], c[1], c[2], c[3]};
-}
-
-/// Stiffness at a strain. k12 is kept below 0.95 √(k11 k22), where the quadratic form in G is
-/// positive definite (one published row is not).
-ICLOTH_HD inline Stiffness stiffness_at(const Fabric& fabric, Sym2 g) {
-  Stiffness k;
-  if (fabric.measured) {
-    k = measured_stiffness(fabric, g);
-  } else {
-    const Real* c = fabric.stretching[0];
-    k = {2 * std::fmax(c[0], Real(0)), 2 * std::fmax(c[1], Real(0)), 2 * std::fmax(c[2], Real(0)),
-         2 * std::fmax(c[3], Real(0))};
-  }
-  k.k12 = std::fmin(k.k12, Real(0.95) * std::sqrt(k.k11 * k.k22));
-  return k;
 }
 
 ICLOTH_HD inline Sym2 stress(const Stiffness& k, Sym2 g) {

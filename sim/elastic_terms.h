@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/bending.h"
+#include "kernels/strain_limit.h"
 #include "sim/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -61,20 +62,27 @@ struct MembraneTerms {
     corners(point.at, at);
     corners(point.v, v);
     const FaceFrame frame = face_frame(at, inverse[i].m);
+    const Sym2 g = green_strain(frame);
     const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
-    const Sym2 s = stress(k, green_strain(frame)), positive = positive_part(s);
+    const StrainLimit limit = strain_limit(cloth, g);
+    Sym2 s = stress(k, g);
+    if (limit.active) s = s + limit_stress(limit);
+    const Sym2 positive = positive_part(s);
+    const FaceFrame principal = limit.active ? principal_frame(frame, limit) : frame;
     const Real dt = point.dt, damping = cloth.damping + damping_extra;
     FaceTerm t;
     for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s, area[i], a);
     for (int a = 0; a < 3; ++a) {
       for (int b = a; b < 3; ++b) {
-        const Mat3r h = dt * membrane_block(frame, k, positive, area[i], a, b);
+        Mat3r h = membrane_block(frame, k, positive, area[i], a, b);
+        if (limit.active) h += limit_block(principal, limit, area[i], a, b);
+        h = dt * h;
         t.block[block_slot(a, b)] = (dt + damping) * h;
         t.impulse[a] -= h * point.lead(f.v[b], damping);
         if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
       }
     }
-    add_air(t, at, v);
+    if (wind.density > 0 || wind.drag > 0) add_air(t, at, v);
     term[i] = t;
   }
 

@@ -23,6 +23,33 @@ struct Material {
   std::array<std::array<double, 4>, 6> stretching{};
   /// Rows: hinge along 0°, 45°, 90°; columns: curvature samples 0…4 [N·m].
   std::array<std::array<double, 5>, 3> bending{};
+  double bending_poisson = 0;  ///< of the plate model: D12 = ν √(D11 D22), in (−0.95, 0.95)
+  double strain_limit = 0;     ///< principal stretch − 1 where it begins to harden; 0: never
 };
+
+/// Constants of an orthotropic fabric as engineers give them.
+struct OrthotropicFabric {
+  double young_u = 0, young_v = 0;  ///< tensile stiffness along weft and warp [N/m], > 0
+  double poisson = 0;               ///< ν_uv: contraction along v under tension along u
+  double shear = 0;                 ///< G against the angle γ [N/m], > 0
+  double bend_u = 0, bend_v = 0;    ///< moment per width and curvature along u and v [N·m]
+  double bend_diagonal = -1;        ///< the same at 45°; < 0: that of a plate between u and v
+  double bending_poisson = 0;       ///< of the bending alone
+};
+
+/// |ν| √(E_v / E_u), which must be below this; at 1 the fabric has no stiffness against some
+/// strain.
+inline constexpr double kLargestCoupling = 0.95;
+
+/// Largest |c12| / √(c11 c22) of a row, its distance from being positive definite.
+double coupling(const std::array<double, 4>& row);
+
+/// Writes law, stretching and bending of a fabric whose values are in their ranges and whose
+/// coupling is below kLargestCoupling.
+void set_orthotropic(Material& material, const OrthotropicFabric& fabric);
+
+/// Bending constants of a homogeneous sheet of a thickness [m] with the membrane constants of
+/// `fabric`: an upper limit for cloth, whose yarns slide.
+void bend_as_sheet(OrthotropicFabric& fabric, double thickness);
 
 }  // namespace icloth

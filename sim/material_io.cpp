@@ -1,6 +1,7 @@
 #include "sim/material_io.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
@@ -48,6 +49,43 @@ void read_bending(const JsonValue& value, double unit, Material& material) {
   }
 }
 
+/// Tensile, shear and bending constants; throws where some strain would cost no energy.
+void read_orthotropic(const JsonValue& value, Material& material) {
+  JsonObject object(value);
+  OrthotropicFabric f;
+  const std::vector<double> young = object.required("young").numbers(2, kPositive);
+  f.young_u = young[0], f.young_v = young[1];
+  f.poisson = object.number("poisson", 0, {-10, 10});
+  const double most = kLargestCoupling * std::sqrt(f.young_u / f.young_v);
+  if (!(std::fabs(f.poisson) < most))
+    object["poisson"].refuse("|poisson| below 0.95 sqrt(E_u / E_v) = " + std::to_string(most));
+  f.shear = object.required("shear").number(kPositive);
+  if (object.has("thickness")) bend_as_sheet(f, object["thickness"].number({1e-6, 0.1}));
+  if (object.has("bending")) {
+    const JsonValue bending = object["bending"];
+    const std::size_t count = bending.items().size();
+    if (count != 2 && count != 3)
+      bending.refuse("moduli along weft and warp in N m, and perhaps along the diagonal");
+    const std::vector<double> moduli = bending.numbers(count, kNotNegative);
+    f.bend_u = moduli[0], f.bend_v = moduli[1], f.bend_diagonal = count == 3 ? moduli[2] : -1;
+    f.bending_poisson = 0;
+  } else if (!object.has("thickness")) {
+    object.required("bending");
+  }
+  object.finish();
+  set_orthotropic(material, f);
+}
+
+/// With the orthotropic law the row at rest is all there is, and is used as it stands.
+void check_orthotropic(const JsonValue& where, const Material& material) {
+  const auto& row = material.stretching[0];
+  if (material.law == Material::Law::orthotropic &&
+      !(row[3] > 0 && coupling(row) < kLargestCoupling))
+    where.refuse(
+        "for the law \"orthotropic\" a row at rest with c33 above 0 and |c12| below "
+        "0.95 sqrt(c11 c22)");
+}
+
 Material parse(const nlohmann::json& json, const std::string& where, const std::string& folder,
                int depth) {
   JsonObject object(JsonValue(json, where));
@@ -69,10 +107,21 @@ Material parse(const nlohmann::json& json, const std::string& where, const std::
   if (object.has("density") || !has_base)
     material.density = object.required("density").number({1e-3, 100});
   material.damping = object.number("damping", material.damping, {0, 10});
-  if (object.has("stretching") || !has_base)
+  const bool constants = object.has("orthotropic");
+  if (constants) {
+    for (const char* key : {"law", "stretching", "bending", "bending_unit"})
+      if (object.has(key)) object[key].refuse("no such key beside \"orthotropic\"");
+    read_orthotropic(object["orthotropic"], material);
+  }
+  if (object.has("stretching") || !(has_base || constants))
     read_stretching(object.required("stretching"), material);
   const double unit = object.number("bending_unit", 1, kPositive);
-  if (object.has("bending") || !has_base) read_bending(object.required("bending"), unit, material);
+  if (object.has("bending") || !(has_base || constants))
+    read_bending(object.required("bending"), unit, material);
+  material.bending_poisson =
+      object.number("bending_poisson", material.bending_poisson, {-0.95, 0.95});
+  material.strain_limit = object.number("strain_limit", material.strain_limit, {0, 10});
+  check_orthotropic(object.value(), material);
   object.finish();
   return material;
 }

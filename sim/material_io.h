@@ -8,10 +8,9 @@
 
 namespace icloth {
 
-/// Material from a JSON object; `where` is its place for messages. Keys: name, description, source,
-/// base (a material to start from), law ("measured" or "orthotropic"), density [kg/m²], damping
-/// [s], stretching {rest: 4 numbers, stretched: 5 × 4 numbers} [N/m], bending: 3 × 5 numbers
-/// [bending_unit × N·m]. Files named in it are looked for in `folder`. Throws InputError.
+/// Material from a JSON object; `where` is its place for messages. Keys: see docs/scene-format.md.
+/// Files named in it are looked for in `folder`. Throws InputError, also where the stretching of an
+/// orthotropic fabric is not positive definite.
 Material parse_material(const nlohmann::json& json, const std::string& where,
                         const std::string& folder);
 

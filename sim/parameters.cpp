@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <type_traits>
 #include <vector>
 
 #include "sim/error.h"
@@ -21,6 +22,7 @@ using P = Parameters;
 constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
 constexpr std::string_view kZoneSolvers[] = {"augmented_lagrangian", "dual", "linear"};
 constexpr std::string_view kBroadPhaseMethods[] = {"tree", "hash"};
+constexpr std::string_view kMaterialEvaluations[] = {"direct", "table"};
 
 constexpr ParameterInfo kTable[] = {
     {"step.time_step", "time step dt", "s", &P::time_step, 1e-4, 0.1, true,
@@ -64,6 +66,13 @@ constexpr ParameterInfo kTable[] = {
     {"material.damping", "added damping", "s", &P::damping_extra, 0, 0.1, false,
      "ripples live longer", "ripples and motion die out, rotations are braked too",
      "none beyond the fabric's own"},
+    {"material.strain_limit", "strain limit", "", &P::strain_limit, 0, 10, false,
+     "cloth hardens at less stretch, more iterations; 0: as its fabric says, mostly never",
+     "cloth stretches further before it hardens", "own choice; 0.1: a tenth longer"},
+    {"material.evaluation", "stiffness", "", &P::material_evaluation, 0, 1, false,
+     "direct: the measured law at each strain",
+     "table: sampled at 30 strains in three axes and interpolated, as ARCSim does",
+     "for comparisons"},
 
     {"proximity.enabled", "repulsion and friction", "", &P::proximity_enabled, 0, 1, false,
      "off: impact zones alone keep layers apart, no friction", "on", "paper, Section 2.5"},
@@ -246,6 +255,7 @@ const ParameterInfo* find_parameter(std::string_view name) {
 std::span<const std::string_view> parameter_choices(const ParameterInfo& info) {
   if (std::holds_alternative<ZoneSolver P::*>(info.member)) return kZoneSolvers;
   if (std::holds_alternative<BroadPhaseMethod P::*>(info.member)) return kBroadPhaseMethods;
+  if (std::holds_alternative<MaterialEvaluation P::*>(info.member)) return kMaterialEvaluations;
   return {};
 }
 
@@ -266,14 +276,15 @@ void set_parameter(Parameters& parameters, const ParameterInfo& info, double val
   const bool whole = !std::holds_alternative<double P::*>(info.member);
   if (!(value >= info.minimum && value <= info.maximum) || (whole && value != std::floor(value)))
     refuse(info, short_number(value));
-  if (const auto* real = std::get_if<double P::*>(&info.member)) parameters.** real = value;
-  if (const auto* number = std::get_if<int P::*>(&info.member))
-    parameters.** number = static_cast<int>(value);
-  if (const auto* flag = std::get_if<bool P::*>(&info.member)) parameters.** flag = value != 0;
-  if (const auto* solver = std::get_if<ZoneSolver P::*>(&info.member))
-    parameters.** solver = static_cast<ZoneSolver>(static_cast<int>(value));
-  if (const auto* method = std::get_if<BroadPhaseMethod P::*>(&info.member))
-    parameters.** method = static_cast<BroadPhaseMethod>(static_cast<int>(value));
+  std::visit(
+      [&](auto member) {
+        using Type = std::remove_reference_t<decltype(parameters.*member)>;
+        if constexpr (std::is_enum_v<Type>)
+          parameters.*member = static_cast<Type>(static_cast<int>(value));
+        else
+          parameters.*member = static_cast<Type>(value);
+      },
+      info.member);
 }
 
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {

@@ -12,6 +12,7 @@ namespace icloth {
 /// its public name, unit, range and meaning; all of them may change between two steps.
 enum class ZoneSolver { augmented_lagrangian, dual, linear };
 enum class BroadPhaseMethod { tree, hash };
+enum class MaterialEvaluation { direct, table };
 
 struct Parameters {
   // step
@@ -28,6 +29,8 @@ struct Parameters {
   double bend_scale = 1.0;
   double density_scale = 1.0;
   double damping_extra = 0.0;
+  double strain_limit = 0.0;
+  MaterialEvaluation material_evaluation = MaterialEvaluation::direct;
   // proximity
   bool proximity_enabled = true;
   double thickness = 1e-3;
@@ -66,7 +69,8 @@ struct Parameters {
 
 struct ParameterInfo {
   using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
-                              ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*>;
+                              ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*,
+                              MaterialEvaluation Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol

@@ -153,6 +153,11 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   loaded.cloth.material = material.json().is_object()
                               ? parse_material(material.json(), material.where(), folder.path)
                               : load_material(object.text("material", "default"), folder.path);
+  if (object.has("rest_angles")) {
+    const std::string& angles = object["rest_angles"].text();
+    if (angles != "mesh" && angles != "flat") object["rest_angles"].refuse("\"mesh\" or \"flat\"");
+    loaded.cloth.flat_angles = angles == "flat";
+  }
   refuse_feature(object, "seams", "use one mesh whose panels share vertices");
   object.finish();
   return loaded;

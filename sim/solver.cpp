@@ -6,6 +6,7 @@
 #include "kernels/device.h"
 #include "kernels/hand_out.h"
 #include "kernels/parallel.h"
+#include "sim/fabrics.h"
 #include "sim/statistics.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -23,19 +24,6 @@ void upload_as(Array<To>& array, const std::vector<From>& from, const Convert& t
 }
 
 Vec3r to_real(Vec3d a) { return convert<Real>(a); }
-
-Fabric make_fabric(const Material& material, const Parameters& p) {
-  Fabric f{};
-  for (std::size_t row = 0; row < 6; ++row)
-    for (std::size_t c = 0; c < 4; ++c)
-      f.stretching[row][c] = real(p.stretch_scale * material.stretching[row][c]);
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t c = 0; c < 5; ++c)
-      f.bending[row][c] = real(p.bend_scale * material.bending[row][c]);
-  f.damping = real(material.damping);
-  f.measured = material.law == Material::Law::measured;
-  return f;
-}
 
 struct EndVelocity {
   View<const Vec3r> x0, x1;
@@ -142,8 +130,7 @@ icloth::Build Solver::build() const {
 void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
-  upload_as(mesh_.fabric, scene_->cloths,
-            [&](const Cloth& cloth) { return make_fabric(cloth.material, parameters); });
+  upload_fabrics(mesh_, *scene_, parameters);
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
   for (std::size_t i = 0; i < world_.mass.size(); ++i) {
     mass.push_back(real(parameters.density_scale * world_.mass[i]));

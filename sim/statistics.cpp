@@ -4,6 +4,7 @@
 
 #include "kernels/bending.h"
 #include "kernels/parallel.h"
+#include "kernels/strain_limit.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -29,8 +30,9 @@ struct MembraneEnergy {
     const Int3 f = face[i];
     const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
     const Sym2 g = green_strain(face_frame(xs, inverse[i].m));
-    const Stiffness k = stiffness_at(fabric[face_fabric[i]], g);
-    return {static_cast<double>(area[i] * membrane_energy(k, g)),
+    const Fabric& cloth = fabric[face_fabric[i]];
+    const Real density = membrane_energy(stiffness_at(cloth, g), g) + limit_energy(cloth, g);
+    return {static_cast<double>(area[i] * density),
             static_cast<double>(std::sqrt(std::fmax(largest_stretch2(g), Real(0))) - 1)};
   }
 };

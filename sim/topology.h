@@ -26,6 +26,8 @@ struct Topology {
   Array<HingeRest> hinge;    ///< (hinge_count)
   Array<Fabric> fabric;      ///< one a cloth
   Array<Index> face_fabric;  ///< (cloth_faces)
+  /// What Fabric::table points into; empty without material.evaluation=table.
+  Array<Stiffness> stiffness_table;
 
   struct Inverse {
     Real m[4];

@@ -187,7 +187,7 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
 
 /// Hinge between two faces of one edge; `first` gives the direction of the edge.
 Hinge make_hinge(const World& world, const WorldObject& object, const std::vector<Corners>& corners,
-                 bool has_uv, const HalfEdge& first, const HalfEdge& second) {
+                 bool has_uv, bool flat, const HalfEdge& first, const HalfEdge& second) {
   const Triangle& face0 = world.face[at(first.face)];
   const Triangle& face1 = world.face[at(second.face)];
   const Corners& u0 = corners[at(first.face - object.first_face)];
@@ -208,7 +208,7 @@ Hinge make_hinge(const World& world, const WorldObject& object, const std::vecto
   const Vec2d end = u1[same_way ? (j + 1) % 3 : j] - u0[(i + 1) % 3];
   const double gap = std::hypot(start.x, start.y) + std::hypot(end.x, end.y);
   const bool seam = has_uv && gap > 1e-3 * hinge.rest_length;
-  hinge.rest_angle = seam ? 0.0 : rest_angle(world.rest, hinge.vertices);
+  hinge.rest_angle = seam || flat ? 0.0 : rest_angle(world.rest, hinge.vertices);
   return hinge;
 }
 
@@ -225,8 +225,8 @@ void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
     for (std::size_t i = begin; i < end; ++i) {
       area += world.face_area[at(half_edges[i].face)];
       for (std::size_t j = i + 1; j < end; ++j) {
-        world.hinges.push_back(
-            make_hinge(world, object, corners, metric_uv, half_edges[i], half_edges[j]));
+        world.hinges.push_back(make_hinge(world, object, corners, metric_uv, cloth->flat_angles,
+                                          half_edges[i], half_edges[j]));
         world.hinges.back().weight = 1.0 / static_cast<double>(end - begin - 1);
       }
     }

@@ -96,6 +96,24 @@ TEST(SceneIo, MeshFilesUseTheirMaterialCoordinatesAndAreFoundBesideTheScene) {
   EXPECT_GT(scene->cloths[0].material.bending[0][0], 2e-5);
 }
 
+TEST(SceneIo, MaterialsOfEngineeringConstantsAndFlatRestAngles) {
+  const TemporaryFolder folder;
+  const auto scene = load(folder.write(
+      "a.json", R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "rest_angles": "flat",
+      "material": {"density": 0.1, "strain_limit": 0.2, "orthotropic": {"young": [800, 200],
+      "poisson": 0.5, "shear": 20, "bending": [4e-6, 1e-6]}}}]})"));
+  const Material& m = scene->cloths[0].material;
+  EXPECT_TRUE(scene->cloths[0].flat_angles);
+  EXPECT_EQ(m.law, Material::Law::orthotropic);
+  EXPECT_EQ(m.strain_limit, 0.2);
+  const double plane = 1 - 0.25 * 200 / 800;
+  EXPECT_NEAR(m.stretching[0][0], 400 / plane, 1e-9);
+  EXPECT_NEAR(m.stretching[0][1], 0.5 * 100 / plane, 1e-9);
+  EXPECT_EQ(m.stretching[3], m.stretching[0]);
+  EXPECT_NEAR(m.bending[2][0], 16e-6, 1e-15);  // hinges along v bend the cloth along u
+  EXPECT_NEAR(m.bending[1][4], 9e-6, 1e-15);   // between them, as of a plate
+}
+
 TEST(SceneIo, TextureCoordinatesAreNotTakenForMaterialCoordinates) {
   const TemporaryFolder folder;
   folder.write("t.obj", "v 0 0 0\nv 3 0 0\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");

@@ -156,6 +156,12 @@ TEST(World, AngleDoesNotDependOnTheOrientationOfTheSecondFace) {
   EXPECT_NEAR(world_of({cloth}).hinges[0].rest_angle, expected, 1e-12);
 }
 
+TEST(World, RestAnglesAreFlatWhereThatIsAskedFor) {
+  Cloth cloth = folded_pair(0.7);
+  cloth.flat_angles = true;
+  EXPECT_EQ(world_of({cloth}).hinges[0].rest_angle, 0);
+}
+
 TEST(World, SeamsRestFlat) {
   Cloth cloth = folded_pair(0.7);
   cloth.mesh.uv = {{{{0, 0}, {1, 0}, {0, 1}}}, {{{1, 0}, {0, 0}, {1, -1}}}};

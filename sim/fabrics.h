@@ -1,0 +1,14 @@
+// The fabrics of a scene as the kernels see them.
+#pragma once
+
+#include "sim/parameters.h"
+#include "sim/scene.h"
+#include "sim/topology.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Writes mesh.fabric and mesh.stiffness_table: the materials of the cloths with the scales and
+/// choices of the parameters.
+void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parameters);
+
+}  // namespace icloth::ICLOTH_BUILD
