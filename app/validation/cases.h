@@ -18,4 +18,15 @@ void hung_chain(CaseRun& run);
 void chain_frequencies(CaseRun& run);
 void string_frequencies(CaseRun& run);
 
+// cases_bending.cpp: heavy strips clamped at one end
+void cantilever(CaseRun& run);
+
+// cases_friction.cpp: Coulomb's law on a plane
+void threshold_on_body(CaseRun& run);
+void threshold_on_cloth(CaseRun& run);
+void sliding_on_body(CaseRun& run);
+void sliding_on_cloth(CaseRun& run);
+void stopping_on_body(CaseRun& run);
+void stopping_on_cloth(CaseRun& run);
+
 }  // namespace icloth::validation
