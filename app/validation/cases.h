@@ -20,6 +20,7 @@ void string_frequencies(CaseRun& run);
 
 // cases_bending.cpp: heavy strips clamped at one end
 void cantilever(CaseRun& run);
+void lateral_buckling(CaseRun& run);
 
 // cases_friction.cpp: Coulomb's law on a plane
 void threshold_on_body(CaseRun& run);
@@ -28,5 +29,9 @@ void sliding_on_body(CaseRun& run);
 void sliding_on_cloth(CaseRun& run);
 void stopping_on_body(CaseRun& run);
 void stopping_on_cloth(CaseRun& run);
+
+// cases_grip.cpp: friction against elasticity
+void stick_slip(CaseRun& run);
+void belt(CaseRun& run);
 
 }  // namespace icloth::validation
