@@ -16,6 +16,18 @@ constexpr Case kCases[] = {
     {"catenary", "sinh z / z = L/S", true, hung_chain},
     {"chain frequencies", "Bernoulli: j0n/2 sqrt(g/L)", true, chain_frequencies},
     {"string frequencies", "n pi/L sqrt(T/rho)", true, string_frequencies},
+
+    {"cantilever", "heavy elastica; Romero et al. 2021, test 1", true, cantilever},
+    {"lateral buckling", "Timoshenko and Gere; Romero et al. 2021, test 3", true, lateral_buckling},
+
+    {"incline on a body", "Coulomb: at rest iff tan a <= mu", false, threshold_on_body},
+    {"incline on cloth", "Coulomb: at rest iff tan a <= mu", false, threshold_on_cloth},
+    {"sliding on a body", "g(sin a - mu cos a) t^2/2", false, sliding_on_body},
+    {"sliding on cloth", "g(sin a - mu cos a) t^2/2", false, sliding_on_cloth},
+    {"stopping on a body", "v^2/(2 mu g)", false, stopping_on_body},
+    {"stopping on cloth", "v^2/(2 mu g)", false, stopping_on_cloth},
+    {"stick-slip", "elastica; Sano et al. 2017, Romero et al. 2021, test 4", false, stick_slip},
+    {"belt", "Euler and Eytelwein: exp(mu pi)", false, belt},
 };
 
 }  // namespace

@@ -18,4 +18,20 @@ void hung_chain(CaseRun& run);
 void chain_frequencies(CaseRun& run);
 void string_frequencies(CaseRun& run);
 
+// cases_bending.cpp: heavy strips clamped at one end
+void cantilever(CaseRun& run);
+void lateral_buckling(CaseRun& run);
+
+// cases_friction.cpp: Coulomb's law on a plane
+void threshold_on_body(CaseRun& run);
+void threshold_on_cloth(CaseRun& run);
+void sliding_on_body(CaseRun& run);
+void sliding_on_cloth(CaseRun& run);
+void stopping_on_body(CaseRun& run);
+void stopping_on_cloth(CaseRun& run);
+
+// cases_grip.cpp: friction against elasticity
+void stick_slip(CaseRun& run);
+void belt(CaseRun& run);
+
 }  // namespace icloth::validation

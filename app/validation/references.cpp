@@ -35,6 +35,35 @@ std::array<double, N> integrate(std::array<double, N> y, int count, const Functi
   return y;
 }
 
+/// One Newton step for residual(u, parameter) = 0 with difference quotients.
+template <std::size_t N, class Function>
+std::array<double, N> newton_step(const Function& residual, std::array<double, N> u,
+                                  double parameter) {
+  const std::array<double, N> r = residual(u, parameter);
+  std::array<std::array<double, N + 1>, N> rows;
+  for (std::size_t i = 0; i < N; ++i) rows[i][N] = -r[i];
+  for (std::size_t j = 0; j < N; ++j) {
+    std::array<double, N> moved = u;
+    const double h = 1e-7 * (1 + std::fabs(u[j]));
+    moved[j] += h;
+    const std::array<double, N> there = residual(moved, parameter);
+    for (std::size_t i = 0; i < N; ++i) rows[i][j] = (there[i] - r[i]) / h;
+  }
+  for (std::size_t c = 0; c < N; ++c) {  // Gauss and Jordan, with pivots
+    std::size_t pivot = c;
+    for (std::size_t i = c + 1; i < N; ++i)
+      if (std::fabs(rows[i][c]) > std::fabs(rows[pivot][c])) pivot = i;
+    std::swap(rows[c], rows[pivot]);
+    for (std::size_t i = 0; i < N; ++i) {
+      if (i == c) continue;
+      const double factor = rows[i][c] / rows[c][c];
+      for (std::size_t j = c; j <= N; ++j) rows[i][j] -= factor * rows[c][j];
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) u[i] += rows[i][N] / rows[i][i];
+  return u;
+}
+
 }  // namespace
 
 double hanging_elongation(double length, double density, double gravity, double tensile) {
@@ -79,6 +108,43 @@ HeavyElastica heavy_elastica(double gamma) {
                               std::log(std::numbers::pi / 2));
   const State end = shoot(log_tip);
   return {end[3], end[2], std::numbers::pi / 2 - std::exp(log_tip)};
+}
+
+PressedElastica pressed_elastica(double shortening) {
+  // Unknown: curvature at the clamp, P and Q. Newton with differences, from the buckled shape of a
+  // small shortening on; the branch turns smoothly.
+  using State = std::array<double, 4>;   // θ, θ', ∫ sin θ, ∫ cos θ
+  using Vector = std::array<double, 3>;  // unknowns; residuals
+  const auto residual = [](const Vector& u, double wanted) -> Vector {
+    const State end = integrate<4>({0, u[0], 0, 0}, 200, [&](double, const State& y) -> State {
+      return {y[1], -u[1] * std::sin(y[0]) + u[2] * std::cos(y[0]), std::sin(y[0]),
+              std::cos(y[0])};
+    });
+    return {end[1], end[2], end[3] - (1 - wanted)};
+  };
+  // A clamped and hinged strip buckles at P = 4.4934².
+  constexpr int kStages = 15;
+  const double first = std::min(1e-4, shortening);
+  Vector u{4.4934 * 4.4934 * std::sqrt(first) * 0.4, 20.19, -20.19 * 0.445 * std::sqrt(first)};
+  for (int stage = 0; stage <= kStages; ++stage) {
+    const double wanted = first + (shortening - first) * std::pow(stage / double(kStages), 2);
+    for (int k = 0; k < 6; ++k) u = newton_step<3>(residual, u, wanted);
+  }
+  return {u[1], std::fabs(u[2]) / u[1]};
+}
+
+double belt_leg(double friction, double leg, double radius) {
+  // In units of ρ g: T(0) = leg, T(π) = heavy leg.
+  constexpr double kPi = std::numbers::pi;
+  const auto slope = [&](double s, const std::array<double, 1>& t) -> std::array<double, 1> {
+    const double phi = kPi * s;
+    return {kPi * (friction * t[0] + radius * (std::cos(phi) + friction * std::sin(phi)))};
+  };
+  return integrate<1>({leg}, 400, slope)[0];
+}
+
+double belt_friction(double light_leg, double heavy_leg, double radius) {
+  return root([&](double f) { return belt_leg(f, light_leg, radius) - heavy_leg; }, 0, 3);
 }
 
 }  // namespace icloth::validation
