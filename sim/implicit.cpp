@@ -232,6 +232,7 @@ void Implicit::set_up(const World& world) {
   }
   while (row < world.cloth_vertices) close_row();
   matrix_.set_pattern(row_first, column);
+  solver_.set_up(row_first, column);
   face_source_first_.upload(face_first);
   face_source_.upload(face_source);
   hinge_source_first_.upload(hinge_first);
@@ -277,12 +278,8 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
   const Incidence& incidence = proximity.incidence();
-  const SystemView system{matrix_.row_first.view(),   matrix_.column.view(),
-                          matrix_.lower_first.view(), matrix_.lower_column.view(),
-                          matrix_.lower_block.view(), matrix_.value.view().data()->m,
-                          s.inverse_mass.view(),      contacts.view(),
-                          contact_terms_.view(),      incidence.first(),
-                          incidence.entries()};
+  const SystemView system{matrix_.view(),        s.inverse_mass.view(), contacts.view(),
+                          contact_terms_.view(), incidence.first(),     incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
   free_motion_.resize(mesh.vertices);
   for_each("implicit.free_motion", mesh.vertices,
@@ -305,7 +302,8 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
                        inverse_diagonal_.view()});
     const LinearSolution solution =
         solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
-                      step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
+                      {step.parameters.preconditioner, step.parameters.cg_tolerance,
+                       step.parameters.cg_max_iterations});
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
