@@ -258,6 +258,7 @@ void Implicit::set_up(const World& world) {
   }
   while (row < world.cloth_vertices) close_row();
   matrix_.set_pattern(row_first, column);
+  solver_.set_up(row_first, column);
   face_source_first_.upload(face_first);
   face_source_.upload(face_source);
   hinge_source_first_.upload(hinge_first);
@@ -327,12 +328,8 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
   contact_terms_.resize(contacts.size());
   inverse_diagonal_.resize(mesh.cloth_vertices);
   contact_rhs_.resize(mesh.cloth_vertices);
-  const SystemView system{matrix_.row_first.view(),   matrix_.column.view(),
-                          matrix_.lower_first.view(), matrix_.lower_column.view(),
-                          matrix_.lower_block.view(), matrix_.value.view().data()->m,
-                          s.inverse_mass.view(),      contacts.view(),
-                          contact_terms_.view(),      incidence.first(),
-                          incidence.entries()};
+  const SystemView system{matrix_.view(),        s.inverse_mass.view(), contacts.view(),
+                          contact_terms_.view(), incidence.first(),     incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
   VertexMotion motion{free_motion_.view(),
                       dv_.view(),
@@ -350,7 +347,8 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
                        inverse_diagonal_.view()});
     const LinearSolution solution =
         solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
-                      step.parameters.cg_tolerance, step.parameters.cg_max_iterations);
+                      {step.parameters.preconditioner, step.parameters.cg_tolerance,
+                       step.parameters.cg_max_iterations});
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);

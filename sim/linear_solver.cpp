@@ -3,49 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/lanes.h"
-
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-/// Two dot products at once, in double.
-struct Dots {
-  double rz, rr;
-  ICLOTH_HD friend Dots operator+(Dots a, Dots b) { return {a.rz + b.rz, a.rr + b.rr}; }
-};
-
-ICLOTH_HD double dot_double(Vec3r a, Vec3r b) {
-  return dot(convert<double>(a), convert<double>(b));
-}
-
-/// One row of the product without the contacts' share; every stored block serves two rows.
-ICLOTH_HD Vec3r multiply_row(const SystemView& system, Index i, const Real* numbers) {
-  // Three numbers a row are read as four: one vector multiplication. The fourth is not used; the
-  // arrays are one element longer than their content, so that it can be read.
-  Lanes row0{}, row1{}, row2{}, columns{};
-  for (Index k = system.row_first[i]; k < system.row_first[i + 1]; ++k) {
-    const Real* m = system.entries + 9 * static_cast<std::ptrdiff_t>(k);
-    const Lanes v = load_lanes(numbers + 3 * static_cast<std::ptrdiff_t>(system.column[k]));
-    row0 += load_lanes(m) * v;
-    row1 += load_lanes(m + 3) * v;
-    row2 += load_lanes(m + 6) * v;
-  }
-  for (Index k = system.lower_first[i]; k < system.lower_first[i + 1]; ++k) {
-    const Real* m = system.entries + 9 * static_cast<std::ptrdiff_t>(system.lower_block[k]);
-    const Real* v = numbers + 3 * static_cast<std::ptrdiff_t>(system.lower_column[k]);
-    columns += load_lanes(m) * v[0];
-    columns += load_lanes(m + 3) * v[1];
-    columns += load_lanes(m + 6) * v[2];
-  }
-  return {row0[0] + row0[1] + row0[2] + columns[0], row1[0] + row1[1] + row1[2] + columns[1],
-          row2[0] + row2[1] + row2[2] + columns[2]};
-}
-
 /// The whole solve, for one team: every thread goes through the same iterations and has the same
 /// scalars, so that nothing has to be read back in between.
+template <class Preconditioner>
 struct ConjugateGradients {
   SystemView system;
-  View<const Mat3r> inverse_diagonal;
+  Preconditioner precondition;
   View<const Vec3r> b;
   View<Vec3r> x, r, z, p, q;
   View<Vec3r> contact;  ///< H Σ w p of each contact
@@ -83,22 +49,9 @@ struct ConjugateGradients {
         Sum{});
   }
 
-  ICLOTH_HD Dots precondition(Index i) const {
-    z[i] = inverse_diagonal[i] * r[i];
-    return {dot_double(r[i], z[i]), dot_double(r[i], r[i])};
-  }
-
-  /// r = b − A x, z = M⁻¹ r.
-  template <class Team>
-  ICLOTH_HD Dots true_residual(Team& team) const {
-    multiply(team, x);
-    return team.reduce(
-        b.size(), Dots{0, 0},
-        [&](Index i) {
-          r[i] = system.inverse_mass[i] > 0 ? b[i] - q[i] : Vec3r{};
-          return precondition(i);
-        },
-        Sum{});
+  /// Row i of r = b − A x; q is A x.
+  ICLOTH_HD Vec3r true_residual(Index i) const {
+    return r[i] = system.inverse_mass[i] > 0 ? b[i] - q[i] : Vec3r{};
   }
 
   template <class Team>
@@ -119,26 +72,41 @@ struct ConjugateGradients {
     constexpr int kReplaceEvery = 50;  // iterations between true residuals
     const Index n = b.size();
     LinearSolution result;
-    Dots dots = true_residual(team);
+    multiply(team, x);
+    Dots dots = precondition(
+        team, [&](Index i) { return true_residual(i); }, r, z);
     team.for_each(n, [&](Index i) { p[i] = z[i]; });
     while (result.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {
       const double pq = multiply(team, p.sub(0, n));
       if (!(pq > 0) || !(dots.rz > 0)) break;  // rounding has eaten the curvature, or NaN
       const double rz = dots.rz;
       const Real alpha = static_cast<Real>(rz / pq);
-      dots = team.reduce(
-          n, Dots{0, 0},
-          [&](Index i) {
-            x[i] += alpha * p[i];
-            r[i] -= alpha * q[i];
-            return precondition(i);
-          },
-          Sum{});
-      if (++result.iterations % kReplaceEvery == 0) dots = true_residual(team);
+      if (++result.iterations % kReplaceEvery == 0) {
+        team.for_each(n, [&](Index i) { x[i] += alpha * p[i]; });
+        multiply(team, x);
+        dots = precondition(
+            team, [&](Index i) { return true_residual(i); }, r, z);
+      } else {
+        dots = precondition(
+            team,
+            [&](Index i) {
+              x[i] += alpha * p[i];
+              return r[i] -= alpha * q[i];
+            },
+            r, z);
+      }
       const Real beta = static_cast<Real>(dots.rz / rz);
       team.for_each(n, [&](Index i) { p[i] = z[i] + beta * p[i]; });
     }
-    result.residual = std::sqrt(true_residual(team).rr / bb);
+    multiply(team, x);
+    const double rr = team.reduce(
+        n, 0.0,
+        [&](Index i) {
+          const Vec3r residual = true_residual(i);
+          return dot_double(residual, residual);
+        },
+        Sum{});
+    result.residual = std::sqrt(rr / bb);
     return result;
   }
 };
@@ -156,47 +124,31 @@ double bytes_per_iteration(const SystemView& system, Index rows) {
 
 }  // namespace
 
-void BlockMatrix::set_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
-  const std::size_t rows = first.size() - 1;
-  std::vector<Index> lower(rows + 1, 0);
-  const auto for_lower = [&](const auto& visit) {
-    for (std::size_t i = 0; i < rows; ++i)
-      for (Index k = first[i]; k < first[i + 1]; ++k) {
-        const Index j = columns[static_cast<std::size_t>(k)];
-        if (j != static_cast<Index>(i)) visit(static_cast<Index>(i), j, k);
-      }
-  };
-  for_lower([&](Index, Index j, Index) { ++lower[static_cast<std::size_t>(j) + 1]; });
-  for (std::size_t i = 0; i < rows; ++i) lower[i + 1] += lower[i];
-  std::vector<Index> place(lower.begin(), lower.end() - 1);
-  std::vector<Index> lower_columns(columns.size() - rows), blocks(columns.size() - rows);
-  for_lower([&](Index i, Index j, Index k) {
-    const auto slot = static_cast<std::size_t>(place[static_cast<std::size_t>(j)]++);
-    lower_columns[slot] = i;
-    blocks[slot] = k;
-  });
-  row_first.upload(first);
-  column.upload(columns);
-  lower_first.upload(lower);
-  lower_column.upload(lower_columns);
-  lower_block.upload(blocks);
-  value.resize(static_cast<Index>(columns.size()) + kPadding);
-}
-
 LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
-                                   View<const Vec3r> b, View<Vec3r> padded, double tolerance,
-                                   int max_iterations) {
+                                   View<const Vec3r> b, View<Vec3r> padded,
+                                   const SolveOptions& options) {
   const Index n = b.size(), contacts = system.contacts.size();
   for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_}) a->resize(n + kPadding);
   contact_.resize(contacts);
   solution_.resize(1);
-  with_device_team("implicit.solve", std::max(n, contacts),
-                   ConjugateGradients{system, inverse_diagonal, b, padded.sub(0, n), r_.view(),
-                                      z_.view(), p_.view(), q_.view(), contact_.view(), tolerance,
-                                      max_iterations, solution_.view()});
+  const auto iterate = [&](const auto& preconditioner) {
+    with_device_team("implicit.solve", std::max(n, contacts),
+                     ConjugateGradients<std::decay_t<decltype(preconditioner)>>{
+                         system, preconditioner, b, padded.sub(0, n), r_.view().sub(0, n),
+                         z_.view().sub(0, n), p_.view(), q_.view(), contact_.view(),
+                         options.tolerance, options.max_iterations, solution_.view()});
+  };
+  double bytes = bytes_per_iteration(system, n);
+  if (options.preconditioner == Preconditioner::multilevel) {
+    hierarchy_.fill(system);
+    iterate(hierarchy_.view(system, inverse_diagonal));
+    bytes += hierarchy_.bytes();
+  } else {
+    iterate(BlockJacobi{inverse_diagonal});
+  }
   LinearSolution solution;
   solution_.download_range(0, {&solution, 1});
-  solution.bytes = solution.iterations * bytes_per_iteration(system, n);
+  solution.bytes = solution.iterations * bytes;
   return solution;
 }
 

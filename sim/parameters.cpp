@@ -21,6 +21,7 @@ using P = Parameters;
 // defaults that Narain, Samii and O'Brien 2012 published with theirs, "measured" our own runs.
 constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
 constexpr std::string_view kZoneSolvers[] = {"augmented_lagrangian", "dual", "linear"};
+constexpr std::string_view kPreconditioners[] = {"block_jacobi", "multilevel"};
 constexpr std::string_view kBroadPhaseMethods[] = {"tree", "hash"};
 constexpr std::string_view kMaterialEvaluations[] = {"direct", "table"};
 
@@ -88,6 +89,9 @@ constexpr ParameterInfo kTable[] = {
     {"proximity.friction_obstacle", "friction cloth–obstacle", "", &P::friction_obstacle, 0, 2,
      false, "cloth slides off bodies", "cloth is carried along by bodies", "ARCSim"},
 
+    {"implicit.preconditioner", "preconditioner", "", &P::preconditioner, 0, 1, false,
+     "block_jacobi: cheap iterations, several times as many",
+     "multilevel: groups of vertices are corrected together, on several levels", "measured"},
     {"implicit.cg_tolerance", "CG tolerance", "", &P::cg_tolerance, 1e-10, 0.5, true,
      "solves the linear system better, slower", "faster, loses momentum, may look damped",
      "measured; the paper's family uses 1e-2"},
@@ -256,6 +260,7 @@ std::span<const std::string_view> parameter_choices(const ParameterInfo& info) {
   if (std::holds_alternative<ZoneSolver P::*>(info.member)) return kZoneSolvers;
   if (std::holds_alternative<BroadPhaseMethod P::*>(info.member)) return kBroadPhaseMethods;
   if (std::holds_alternative<MaterialEvaluation P::*>(info.member)) return kMaterialEvaluations;
+  if (std::holds_alternative<Preconditioner P::*>(info.member)) return kPreconditioners;
   return {};
 }
 

@@ -11,6 +11,7 @@ namespace icloth {
 /// Settings of a running simulation. Every member has one row in parameter_table(), which holds
 /// its public name, unit, range and meaning; all of them may change between two steps.
 enum class ZoneSolver { augmented_lagrangian, dual, linear };
+enum class Preconditioner { block_jacobi, multilevel };
 enum class BroadPhaseMethod { tree, hash };
 enum class MaterialEvaluation { direct, table };
 
@@ -38,6 +39,7 @@ struct Parameters {
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
   // implicit
+  Preconditioner preconditioner = Preconditioner::block_jacobi;
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
   int contact_passes = 4;
@@ -70,7 +72,7 @@ struct Parameters {
 struct ParameterInfo {
   using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
                               ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*,
-                              MaterialEvaluation Parameters::*>;
+                              MaterialEvaluation Parameters::*, Preconditioner Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol

@@ -110,7 +110,8 @@ struct RandomSystem {
     x.fill(Vec3r{});
   }
 
-  LinearSolution solve(double tolerance, int iterations) {
+  LinearSolution solve(double tolerance, int iterations,
+                       Preconditioner preconditioner = Preconditioner::multilevel) {
     SystemView view;
     view.row_first = matrix.row_first.view();
     view.column = matrix.column.view();
@@ -124,7 +125,9 @@ struct RandomSystem {
     view.contact_first = incidence.first();
     view.contact_entries = incidence.entries();
     LinearSolver solver;
-    return solver.solve(view, inverse_diagonal.view(), b.view(), x.view(), tolerance, iterations);
+    solver.set_up(matrix.row_first.download(), matrix.column.download());
+    return solver.solve(view, inverse_diagonal.view(), b.view(), x.view(),
+                        {preconditioner, tolerance, iterations});
   }
 
   /// The same system written out, with rows and columns of prescribed vertices replaced by those

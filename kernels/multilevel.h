@@ -1,0 +1,128 @@
+// The multilevel preconditioner as the solver applies it.
+//
+//   z = D⁻¹ r + P V(Pᵀ r)
+//
+// D: diagonal blocks; P: piecewise constant on groups of neighbouring vertices (aggregates, Notay
+// 2010, "An aggregation-based algebraic multigrid method"); V: one V-cycle with one damped
+// block-Jacobi sweep down and up on each coarser level. The finest level is only added to, as a
+// sweep there would cost a product with the whole matrix, which is what an iteration costs.
+//
+// Symmetric positive definite by construction: a level's matrix is a sum of terms that couple at
+// most 4 nodes each, so A ≤ 4 D, and a sweep damped by kDamping ≤ 1/2 never overshoots.
+#pragma once
+
+#include "kernels/block_matrix.h"
+#include "kernels/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Two dot products at once, in double.
+struct Dots {
+  double rz, rr;
+  ICLOTH_HD friend Dots operator+(Dots a, Dots b) { return {a.rz + b.rz, a.rr + b.rr}; }
+};
+
+ICLOTH_HD inline double dot_double(Vec3r a, Vec3r b) {
+  return dot(convert<double>(a), convert<double>(b));
+}
+
+/// z = D⁻¹ r.
+struct BlockJacobi {
+  View<const Mat3r> inverse_diagonal;  ///< (rows)
+
+  /// residual(i) sets r[i] and returns it; writes z. Returns r·z and r·r.
+  template <class Team, class Residual>
+  ICLOTH_HD Dots operator()(Team& team, const Residual& residual, View<const Vec3r>,
+                            View<Vec3r> z) const {
+    return team.reduce(
+        inverse_diagonal.size(), Dots{0, 0},
+        [&](Index i) {
+          const Vec3r r = residual(i);
+          z[i] = inverse_diagonal[i] * r;
+          return Dots{dot_double(r, z[i]), dot_double(r, r)};
+        },
+        Sum{});
+  }
+};
+
+/// The nodes of all levels are in one numbering, the finest level first.
+struct Multilevel {
+  static constexpr int kMaxLevels = 8;
+  static constexpr Real kDamping = Real(0.5);
+  static constexpr int kLastSweeps = 3;  ///< on the coarsest level; odd, so that they end in t
+
+  struct Level {
+    Index first, count;
+  };
+
+  View<const Mat3r> inverse_diagonal;  ///< (vertices)
+  View<const Real> inverse_mass;       ///< 0: prescribed (vertices)
+  View<const Index> group;             ///< node of each vertex (vertices)
+  View<const Index> child_first;       ///< (nodes + 1)
+  View<const Index> child;             ///< vertices of a node of the finest level, else nodes
+  View<const Index> parent;            ///< of each node but the coarsest level's (nodes)
+  MatrixView matrix;                   ///< of all levels: no block between two of them (nodes)
+  View<const Mat3r> smoother;          ///< kDamping × inverse diagonal block (nodes)
+  View<Vec3r> b, z, t;                 ///< right-hand side, correction, scratch (nodes)
+  Level level[kMaxLevels];
+  int levels;
+
+  /// As of BlockJacobi.
+  template <class Team, class Residual>
+  ICLOTH_HD Dots operator()(Team& team, const Residual& residual, View<const Vec3r> r,
+                            View<Vec3r> out) const {
+    team.for_each(out.size(), [&](Index i) { residual(i); });
+    for (int l = 0; l < levels; ++l) go_down(team, l, l == 0 ? r : t);
+    for (int l = levels - 2; l >= 0; --l) go_up(team, level[l]);
+    return team.reduce(
+        out.size(), Dots{0, 0},
+        [&](Index i) {
+          Vec3r sum = inverse_diagonal[i] * r[i];
+          if (levels > 0 && inverse_mass[i] > 0) sum += t[group[i]];
+          out[i] = sum;
+          return Dots{dot_double(r[i], sum), dot_double(r[i], r[i])};
+        },
+        Sum{});
+  }
+
+ private:
+  ICLOTH_HD Vec3r swept(Index i, View<const Vec3r> from) const {
+    return from[i] + smoother[i] * (b[i] - multiply_row(matrix, i, &from.data()->x));
+  }
+
+  /// Leaves in t what the next level has to correct, or on the coarsest the correction.
+  template <class Team>
+  ICLOTH_HD void go_down(Team& team, int l, View<const Vec3r> finer) const {
+    const Index first = level[l].first, count = level[l].count;
+    team.for_each(count, [&](Index k) {
+      const Index i = first + k;
+      Vec3r sum{};
+      for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += finer[child[c]];
+      b[i] = sum;
+      z[i] = smoother[i] * sum;
+    });
+    if (l + 1 < levels) {
+      team.for_each(count, [&](Index k) {
+        const Index i = first + k;
+        t[i] = b[i] - multiply_row(matrix, i, &z.data()->x);
+      });
+      return;
+    }
+    View<Vec3r> from = z, to = t;
+    for (int sweep = 0; sweep < kLastSweeps; ++sweep) {
+      team.for_each(count, [&](Index k) { to[first + k] = swept(first + k, from); });
+      const View<Vec3r> last = from;
+      from = to, to = last;
+    }
+  }
+
+  /// Adds the correction of the coarser level and sweeps; the result is in t.
+  template <class Team>
+  ICLOTH_HD void go_up(Team& team, const Level& at) const {
+    const Index first = at.first;
+    team.for_each(at.count, [&](Index k) { z[first + k] += t[parent[first + k]]; });
+    team.for_each(at.count, [&](Index k) { t[first + k] = swept(first + k, z); });
+  }
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,146 @@
+#include "sim/aggregation.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace icloth {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+template <class Visit>
+void for_neighbours(const Graph& graph, Index i, const Visit& visit) {
+  for (Index k = graph.first[at(i)]; k < graph.first[at(i) + 1]; ++k) visit(graph.neighbour[at(k)]);
+}
+
+/// Fills `first` from counts in first[1 …].
+void add_up(std::vector<Index>& first) {
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+}
+
+class Growth {
+ public:
+  Growth(const Graph& graph, Index size)
+      : graph_(graph), size_(size), known_by_(at(graph.size()), 0), waiting_(known_by_) {
+    result_.group.assign(at(graph.size()), kNone);
+  }
+
+  Aggregation run() {
+    for (Index i = 0; i < graph_.size(); ++i) {
+      seeds_.push_back(i);
+      // Nodes next to what is grouped already come first, in the order in which they were met.
+      for (; next_seed_ < seeds_.size(); ++next_seed_)
+        if (free(seeds_[next_seed_])) grow(seeds_[next_seed_]);
+    }
+    give_away_small_groups();
+    return std::move(result_);
+  }
+
+ private:
+  bool free(Index i) const { return result_.group[at(i)] == kNone; }
+
+  void grow(Index seed) {
+    met_.clear();
+    Index members = 0;
+    for (Index next = seed; next != kNone && members < size_; next = most_known()) {
+      result_.group[at(next)] = result_.count;
+      ++members;
+      for_neighbours(graph_, next, [&](Index j) {
+        if (free(j) && known_by_[at(j)]++ == 0) met_.push_back(j);
+      });
+    }
+    for (const Index j : met_) {
+      known_by_[at(j)] = 0;
+      if (free(j) && !std::exchange(waiting_[at(j)], 1)) seeds_.push_back(j);
+    }
+    members_.push_back(members);
+    ++result_.count;
+  }
+
+  Index most_known() const {
+    Index best = kNone;
+    for (const Index j : met_)
+      if (free(j) && (best == kNone || known_by_[at(j)] > known_by_[at(best)])) best = j;
+    return best;
+  }
+
+  void give_away_small_groups() {
+    const Index small = size_ / 3, full = size_ + size_ / 2;
+    for (Index i = 0; i < graph_.size(); ++i) {
+      Index& mine = result_.group[at(i)];
+      if (members_[at(mine)] > small) continue;
+      Index best = kNone;
+      for_neighbours(graph_, i, [&](Index j) {
+        const Index other = result_.group[at(j)];
+        if (other == mine || members_[at(other)] <= small || members_[at(other)] >= full) return;
+        if (best == kNone || members_[at(other)] < members_[at(best)]) best = other;
+      });
+      if (best == kNone) continue;
+      --members_[at(mine)];
+      ++members_[at(best)];
+      mine = best;
+    }
+    renumber();
+  }
+
+  void renumber() {
+    std::vector<Index> number(members_.size(), kNone);
+    result_.count = 0;
+    for (std::size_t g = 0; g < members_.size(); ++g)
+      if (members_[g] > 0) number[g] = result_.count++;
+    for (Index& g : result_.group) g = number[at(g)];
+  }
+
+  const Graph& graph_;
+  Index size_;
+  std::vector<Index> known_by_;  ///< members of the growing group next to each node
+  std::vector<Index> waiting_;   ///< 1: is in seeds_ already
+  std::vector<Index> met_, seeds_, members_;
+  std::size_t next_seed_ = 0;
+  Aggregation result_;
+};
+
+}  // namespace
+
+Graph graph_of_pattern(const std::vector<Index>& row_first, const std::vector<Index>& column) {
+  Graph graph;
+  const std::size_t rows = row_first.size() - 1;
+  const auto for_edges = [&](const auto& visit) {
+    for (std::size_t i = 0; i < rows; ++i)
+      for (Index k = row_first[i]; k < row_first[i + 1]; ++k)
+        if (column[at(k)] != static_cast<Index>(i)) visit(i, at(column[at(k)]));
+  };
+  graph.first.assign(rows + 1, 0);
+  for_edges([&](std::size_t i, std::size_t j) { ++graph.first[i + 1], ++graph.first[j + 1]; });
+  add_up(graph.first);
+  std::vector<Index> place(graph.first.begin(), graph.first.end() - 1);
+  graph.neighbour.resize(at(graph.first.back()));
+  for_edges([&](std::size_t i, std::size_t j) {
+    graph.neighbour[at(place[i]++)] = static_cast<Index>(j);
+    graph.neighbour[at(place[j]++)] = static_cast<Index>(i);
+  });
+  return graph;
+}
+
+Aggregation aggregate(const Graph& graph, Index size) { return Growth(graph, size).run(); }
+
+void coarse_pattern(const Graph& graph, const Aggregation& groups, std::vector<Index>& row_first,
+                    std::vector<Index>& column) {
+  std::vector<std::vector<Index>> rows(at(groups.count));
+  for (Index i = 0; i < graph.size(); ++i)
+    for_neighbours(graph, i, [&](Index j) {
+      const Index from = groups.group[at(i)], to = groups.group[at(j)];
+      if (from < to) rows[at(from)].push_back(to);
+    });
+  row_first.assign(1, 0);
+  column.clear();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::sort(rows[i].begin(), rows[i].end());
+    rows[i].erase(std::unique(rows[i].begin(), rows[i].end()), rows[i].end());
+    column.push_back(static_cast<Index>(i));
+    column.insert(column.end(), rows[i].begin(), rows[i].end());
+    row_first.push_back(static_cast<Index>(column.size()));
+  }
+}
+
+}  // namespace icloth

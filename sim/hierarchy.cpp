@@ -1,0 +1,255 @@
+#include "sim/hierarchy.h"
+
+#include <algorithm>
+
+#include "kernels/parallel.h"
+#include "sim/aggregation.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// Constants on groups of vertices take all their difference across one row of edges, so their
+/// stiffness is too large compared to smooth functions (Braess 1995, "Towards algebraic multigrid
+/// for elliptic problems of second order"). Measured: 1 … 2 make little difference, 1.5 is best.
+constexpr Real kOverestimate = Real(1.5);
+
+// Vertices of a group on the finest level, nodes on the others.
+constexpr Index kFirstGroup = 8, kGroup = 4;
+constexpr Index kFewNodes = 64;  // a level of so few is the last
+
+/// Sums up the blocks of one level from those of the finer one.
+struct CoarseBlocks {
+  View<const Index> row, column;  ///< of the finer level
+  const Real* entries;            ///< likewise
+  View<const Real> live;          ///< of its rows: 0 for prescribed ones
+  View<const Index> source_first, source;
+  View<Mat3r> value;
+  Index first;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index block = first + k;
+    Mat3r sum{};
+    for (Index s = source_first[block]; s < source_first[block + 1]; ++s) {
+      const Index from = source[s] / 2;
+      if (!(live[row[from]] > 0) || !(live[column[from]] > 0)) continue;
+      const Real* m = entries + 9 * static_cast<std::ptrdiff_t>(from);
+      if (source[s] % 2 == 0)
+        for (int e = 0; e < 9; ++e) sum.m[e] += m[e];
+      else
+        for (int e = 0; e < 9; ++e) sum.m[e] += m[3 * (e % 3) + e / 3];
+    }
+    value[block] = (1 / kOverestimate) * sum;
+  }
+};
+
+/// Completes the diagonal block of a node: the mass that CoarseBlocks has scaled with the rest, and
+/// what the contacts add.
+struct FinishNode {
+  View<const Index> row_first;
+  View<Mat3r> value;
+  View<Real> mass;
+  View<Mat3r> smoother;
+
+  ICLOTH_HD void operator()(Index i, Real m, const Mat3r& contacts) const {
+    Mat3r& block = value[row_first[i]];
+    block += Mat3r::identity((1 - 1 / kOverestimate) * m) + contacts;
+    mass[i] = m;
+    smoother[i] = m > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
+  }
+};
+
+struct FinishFirstLevel {
+  View<const Index> child_first, child;
+  View<const Real> inverse_mass;
+  View<const Contact> contacts;
+  View<const ContactTerm> terms;
+  View<const Index> contact_first, contact_entries;
+  FinishNode finish;
+
+  /// A contact is lumped: |w| H at each of its vertices, which is not less than w wᵀ⊗H of one side.
+  ICLOTH_HD void operator()(Index i) const {
+    Real mass = 0;
+    Mat3r sum{};
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) {
+      const Index v = child[c];
+      if (!(inverse_mass[v] > 0)) continue;
+      mass += 1 / inverse_mass[v];
+      for (Index k = contact_first[v]; k < contact_first[v + 1]; ++k) {
+        const Index entry = contact_entries[k];
+        const Real w = std::fabs(contacts[entry / 4].s.w[entry % 4]);
+        const Real* h = terms[entry / 4].h;
+        sum += Mat3r{{w * h[0], w * h[1], w * h[2], w * h[1], w * h[3], w * h[4], w * h[2],
+                      w * h[4], w * h[5]}};
+      }
+    }
+    finish(i, mass, sum);
+  }
+};
+
+struct FinishLevel {
+  View<const Index> child_first, child;
+  FinishNode finish;
+  Index first;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index i = first + k;
+    Real mass = 0;
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) mass += finish.mass[child[c]];
+    finish(i, mass, Mat3r{});
+  }
+};
+
+std::vector<Index> rows_of_blocks(const std::vector<Index>& row_first) {
+  std::vector<Index> rows(static_cast<std::size_t>(row_first.back()));
+  for (std::size_t i = 0; i + 1 < row_first.size(); ++i)
+    std::fill(rows.begin() + row_first[i], rows.begin() + row_first[i + 1], static_cast<Index>(i));
+  return rows;
+}
+
+/// CSR lists of the places where each value 0 … values − 1 stands, ascending.
+void append_places(const std::vector<Index>& value, Index values, Index offset,
+                   std::vector<Index>& first, std::vector<Index>& place) {
+  std::vector<Index> next(static_cast<std::size_t>(values) + 1, 0);
+  for (const Index v : value) ++next[static_cast<std::size_t>(v) + 1];
+  for (std::size_t v = 1; v < next.size(); ++v) next[v] += next[v - 1];
+  const std::size_t before = place.size();
+  for (std::size_t v = 1; v < next.size(); ++v)
+    first.push_back(static_cast<Index>(before) + next[v]);
+  place.resize(before + value.size());
+  for (std::size_t k = 0; k < value.size(); ++k)
+    place[before + static_cast<std::size_t>(next[static_cast<std::size_t>(value[k])]++)] =
+        offset + static_cast<Index>(k);
+}
+
+/// The lists of all levels while they are made on the host.
+struct Layout {
+  std::vector<Index> child_first{0}, child, parent;
+  std::vector<Index> row_first{0}, column;
+  std::vector<Index> source_first{0}, source;
+
+  Index nodes() const { return static_cast<Index>(row_first.size()) - 1; }
+  Index blocks() const { return static_cast<Index>(column.size()); }
+
+  /// Sources of the coarse blocks (first, columns) from the finer ones (fine_first, fine_columns);
+  /// the finer blocks are numbered from `offset` on.
+  void append_sources(const std::vector<Index>& fine_first, const std::vector<Index>& fine_columns,
+                      Index offset, const std::vector<Index>& group,
+                      const std::vector<Index>& first, const std::vector<Index>& columns) {
+    std::vector<Index> target, code;
+    const std::vector<Index> fine_row = rows_of_blocks(fine_first);
+    for (std::size_t k = 0; k < fine_columns.size(); ++k) {
+      const Index i = fine_row[k], j = fine_columns[k];
+      const Index from = group[static_cast<std::size_t>(i)],
+                  to = group[static_cast<std::size_t>(j)];
+      const auto row = static_cast<std::size_t>(std::min(from, to));
+      const auto found = std::lower_bound(columns.begin() + first[row],
+                                          columns.begin() + first[row + 1], std::max(from, to));
+      const Index block = static_cast<Index>(found - columns.begin());
+      const Index number = 2 * (offset + static_cast<Index>(k));
+      if (from <= to) target.push_back(block), code.push_back(number);
+      if (from > to || (from == to && i != j)) target.push_back(block), code.push_back(number + 1);
+    }
+    std::vector<Index> place;
+    const Index before = source_first.back();
+    std::vector<Index> local{0};
+    append_places(target, static_cast<Index>(columns.size()), 0, local, place);
+    for (std::size_t b = 1; b < local.size(); ++b) source_first.push_back(before + local[b]);
+    for (const Index k : place) source.push_back(code[static_cast<std::size_t>(k)]);
+  }
+
+  void append_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
+    const Index node = nodes(), block = blocks();
+    for (std::size_t i = 1; i < first.size(); ++i) row_first.push_back(block + first[i]);
+    for (const Index j : columns) column.push_back(node + j);
+  }
+};
+
+}  // namespace
+
+void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<Index>& column) {
+  levels_ = 0;
+  Layout layout;
+  std::vector<Index> fine_first = row_first, fine_column = column;
+  while (levels_ < Multilevel::kMaxLevels) {
+    const Graph graph = graph_of_pattern(fine_first, fine_column);
+    if (graph.size() <= (levels_ == 0 ? 0 : kFewNodes)) break;
+    const Aggregation groups = aggregate(graph, levels_ == 0 ? kFirstGroup : kGroup);
+    if (groups.count > graph.size() / 2) break;  // pieces that have nothing to do with each other
+    std::vector<Index> first, columns;
+    coarse_pattern(graph, groups, first, columns);
+    const Index finer_node = levels_ == 0 ? 0 : level_[levels_ - 1].first;
+    const Index finer_block = levels_ == 0 ? 0 : blocks_[levels_ - 1].first;
+    level_[levels_] = {layout.nodes(), groups.count};
+    blocks_[levels_] = {layout.blocks(), static_cast<Index>(columns.size())};
+    if (levels_ == 0)
+      group_.upload(groups.group);
+    else
+      for (const Index g : groups.group) layout.parent.push_back(layout.nodes() + g);
+    append_places(groups.group, groups.count, finer_node, layout.child_first, layout.child);
+    layout.append_sources(fine_first, fine_column, finer_block, groups.group, first, columns);
+    layout.append_pattern(first, columns);
+    fine_first.swap(first);
+    fine_column.swap(columns);
+    ++levels_;
+  }
+  layout.parent.resize(static_cast<std::size_t>(layout.nodes()), kNone);
+  child_first_.upload(layout.child_first);
+  child_.upload(layout.child);
+  parent_.upload(layout.parent);
+  vertex_row_.upload(rows_of_blocks(row_first));
+  node_row_.upload(rows_of_blocks(layout.row_first));
+  matrix_.set_pattern(layout.row_first, layout.column);
+  source_first_.upload(layout.source_first);
+  source_.upload(layout.source);
+  mass_.resize(layout.nodes());
+  smoother_.resize(layout.nodes());
+  for (Array<Vec3r>* a : {&b_, &z_, &t_}) a->resize(layout.nodes() + kPadding);
+}
+
+void Hierarchy::fill(const SystemView& system) {
+  const FinishNode finish{matrix_.row_first.view(), matrix_.value.view(), mass_.view(),
+                          smoother_.view()};
+  for (int l = 0; l < levels_; ++l) {
+    CoarseBlocks sum{vertex_row_.view(),   system.column,        system.entries,
+                     system.inverse_mass,  source_first_.view(), source_.view(),
+                     matrix_.value.view(), blocks_[l].first};
+    if (l > 0) {
+      sum.row = node_row_.view(), sum.column = matrix_.column.view();
+      sum.entries = matrix_.value.view().data()->m;
+      sum.live = mass_.view();
+    }
+    for_each("implicit.coarse_blocks", blocks_[l].count, sum);
+    if (l == 0)
+      for_each(
+          "implicit.coarse_nodes", level_[l].count,
+          FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass, system.contacts,
+                           system.terms, system.contact_first, system.contact_entries, finish});
+    else
+      for_each("implicit.coarse_nodes", level_[l].count,
+               FinishLevel{child_first_.view(), child_.view(), finish, level_[l].first});
+  }
+}
+
+Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_diagonal) {
+  Multilevel m{};
+  m.inverse_diagonal = inverse_diagonal;
+  m.inverse_mass = system.inverse_mass;
+  m.group = group_.view();
+  m.child_first = child_first_.view(), m.child = child_.view(), m.parent = parent_.view();
+  m.matrix = matrix_.view();
+  m.smoother = smoother_.view();
+  m.b = b_.view(), m.z = z_.view(), m.t = t_.view();
+  std::copy_n(level_, Multilevel::kMaxLevels, m.level);
+  m.levels = levels_;
+  return m;
+}
+
+double Hierarchy::bytes() const {
+  // Two products a level; b, z and t are each read or written four times.
+  const double blocks = matrix_.column.size(), nodes = matrix_.row_first.size();
+  return 2 * blocks * (sizeof(Mat3r) + 3 * sizeof(Index)) +
+         nodes * (12 * sizeof(Vec3r) + 3 * sizeof(Mat3r) + 8 * sizeof(Index)) +
+         static_cast<double>(group_.size()) * (3 * sizeof(Vec3r) + 2 * sizeof(Index));
+}
+
+}  // namespace icloth::ICLOTH_BUILD

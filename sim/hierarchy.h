@@ -1,0 +1,44 @@
+// The levels of the multilevel preconditioner (kernels/multilevel.h): laid out once from the
+// pattern of the matrix, filled with numbers for every system.
+#pragma once
+
+#include "kernels/multilevel.h"
+#include "sim/linear_system.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+class Hierarchy {
+ public:
+  /// The pattern is the upper half of the matrix, the diagonal first in each row. Groups follow the
+  /// pattern alone, so vertices can become prescribed and free again.
+  void set_up(const std::vector<Index>& row_first, const std::vector<Index>& column);
+
+  /// Sums up the matrices of the levels: (A − M) / kOverestimate + M at each, and the contacts'
+  /// share of the diagonal blocks.
+  void fill(const SystemView& system);
+
+  /// `inverse_diagonal`: of the finest matrix. Valid until the next call of a member.
+  Multilevel view(const SystemView& system, View<const Mat3r> inverse_diagonal);
+
+  int levels() const { return levels_; }
+  /// What one application reads and writes at least [B].
+  double bytes() const;
+
+ private:
+  using Level = Multilevel::Level;
+
+  int levels_ = 0;
+  Level level_[Multilevel::kMaxLevels]{};
+  Level blocks_[Multilevel::kMaxLevels]{};             ///< of the level's matrix in matrix_
+  Array<Index> group_, child_first_, child_, parent_;  ///< see Multilevel
+  Array<Index> vertex_row_;                            ///< row of each block of the system's matrix
+  Array<Index> node_row_;                              ///< row of each block of matrix_
+  BlockMatrix matrix_;
+  /// What adds up to a block of matrix_: 2 × block of the finer level, + 1 where it is transposed.
+  Array<Index> source_first_, source_;
+  Array<Real> mass_;       ///< of the free vertices (nodes), fill
+  Array<Mat3r> smoother_;  ///< see Multilevel (nodes), fill
+  Array<Vec3r> b_, z_, t_;
+};
+
+}  // namespace icloth::ICLOTH_BUILD

@@ -1,0 +1,18 @@
+// The system that an implicit step solves, as the solver and its preconditioner see it.
+#pragma once
+
+#include "kernels/contact.h"
+#include "sim/block_matrix.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices. A − M, M the masses, is positive
+/// semi-definite, and a sum of terms that are 0 where all vertices move alike.
+struct SystemView : MatrixView {
+  View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
+  View<const Contact> contacts;
+  View<const ContactTerm> terms;
+  View<const Index> contact_first, contact_entries;
+};
+
+}  // namespace icloth::ICLOTH_BUILD
