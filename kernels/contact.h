@@ -108,11 +108,14 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
     const Vec3r held = tangential(c, c.held), trial = held - k * end;
     const Real length = norm(trial);
     // A pair that is found to slide one way when it was taken to slide the other way comes to rest
-    // within the step. Before a solve, one that did not slide is expected to stay, and any other to
-    // come to rest where its sliding force alone would turn its expected motion round.
-    const bool turns = motion.solved
-                           ? dot(last.sliding, trial) < 0
-                           : c.stuck != 0 || limit * law.dt * law.dt * inverse_mass > norm(end);
+    // within the step. Before a solve: one that stuck is expected to stay, one that is under way
+    // to slide on, and any other to come to rest where its sliding force alone would turn its
+    // expected motion round.
+    const bool under_way = c.stuck == 0 && carried > 0 && k * norm(start) > c.friction * carried;
+    const bool turns =
+        motion.solved
+            ? dot(last.sliding, trial) < 0
+            : c.stuck != 0 || (!under_way && limit * law.dt * law.dt * inverse_mass > norm(end));
     const bool slips = length > limit && !turns;
     if (slips) {
       const Vec3r d = (Real(1) / length) * trial;

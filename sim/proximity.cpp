@@ -38,12 +38,19 @@ struct ContactMaker {
     return axis == 0 ? p.x : (axis == 1 ? p.y : p.z);
   }
 
-  /// Fills the contact of a stencil; false when the pair does not repel in this step.
-  ICLOTH_HD bool make(Contact& c) const {
+  /// Fills the contact of a stencil; false when the pair does not repel in this step. `across`: a
+  /// vector perpendicular to both elements, zero when there is no such direction. It gives the
+  /// normal, since the gap vector of a small gap has lost its digits.
+  ICLOTH_HD bool make(Contact& c, Vec3r across) const {
     const Vec3r g = apply(c.s, x);
     c.gap = norm(g);
     if (!(c.gap < reach) || c.gap <= 0) return false;
     c.normal = (Real(1) / c.gap) * g;
+    const Real length = norm(across), along = dot(across, c.normal);
+    if (std::fabs(along) > Real(0.9) * length) {
+      c.normal = (along > 0 ? 1 / length : -1 / length) * across;
+      c.gap = dot(c.normal, g);
+    }
     Vec3r relative{};
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) {
@@ -91,7 +98,8 @@ struct FindVertexFace {
     c.s = {{pair.a, f.v[0], f.v[1], f.v[2]},
            {Real(1), -closest.w[0], -closest.w[1], -closest.w[2]}};
     c.area = pair.a < maker.cloth_vertices ? vertex_area[pair.a] : face_area[pair.b];
-    if (maker.make(c)) emit(c);
+    const Vec3r corner = maker.x[f.v[0]];
+    if (maker.make(c, cross(maker.x[f.v[1]] - corner, maker.x[f.v[2]] - corner))) emit(c);
   }
 };
 
@@ -115,7 +123,12 @@ struct FindEdgeEdge {
            {-(1 - closest.s), -closest.s, 1 - closest.t, closest.t}};
     const Real area = edge_area[pair.a];  // the smaller number is a cloth edge
     c.area = pair.b < edge_area.size() ? std::fmin(area, edge_area[pair.b]) : area;
-    if (maker.make(c)) emit(c);
+    const Vec3r along_p = maker.x[p.v[1]] - maker.x[p.v[0]];
+    const Vec3r along_q = maker.x[q.v[1]] - maker.x[q.v[0]];
+    const Vec3r across = cross(along_p, along_q);
+    // Nearly parallel edges do not say where across is.
+    const bool parallel = norm2(across) < Real(1e-2) * norm2(along_p) * norm2(along_q);
+    if (maker.make(c, parallel ? Vec3r{} : across)) emit(c);
   }
 };
 
