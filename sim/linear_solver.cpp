@@ -24,8 +24,12 @@ struct ConjugateGradients {
   ICLOTH_HD double multiply(Team& team, View<const Vec3r> v) const {
     if (contact.size() > 0) {
       team.for_each(contact.size(), [&](Index c) {
-        const Stencil& s = system.contacts[c].s;
         Vec3r sum{};
+        if (system.terms[c].active == 0) {  // most are: they only might close
+          contact[c] = sum;
+          return;
+        }
+        const Stencil& s = system.contacts[c].s;
         for (int a = 0; a < 4; ++a)
           if (s.v[a] < b.size()) sum += s.w[a] * v[s.v[a]];
         contact[c] = icloth::ICLOTH_BUILD::multiply(system.terms[c], sum);

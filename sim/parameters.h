@@ -39,7 +39,7 @@ struct Parameters {
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
   // implicit
-  Preconditioner preconditioner = Preconditioner::block_jacobi;
+  Preconditioner preconditioner = Preconditioner::multilevel;
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
   int contact_passes = 4;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bench/paper.h"
+#include "app/bench/solver.h"
 #include "app/bench/stability.h"
 #include "app/bench/suite.h"
 #include "app/bench/validation.h"
@@ -120,8 +121,9 @@ int run_bench(const BenchOptions& options) {
   if (options.suite == "paper") return run_paper(options);
   if (options.suite == "stability") return run_stability(options);
   if (options.suite == "validation") return run_validation(options);
+  if (options.suite == "solver") return run_solver(options);
   throw InputError("bench: suite '" + options.suite +
-                   "', expected quick, paper, stability or validation");
+                   "', expected quick, paper, stability, validation or solver");
 }
 
 }  // namespace icloth

@@ -11,7 +11,7 @@ struct BenchOptions {
   std::string device;  ///< cpu, cuda or cuda:N; empty: cpu, then cuda where it is usable
   int threads = 0;     ///< of the CPU builds; 0: all
   bool quiet = false;  ///< no progress line
-  std::string only;    ///< stability, validation: cases whose name holds this; empty: all
+  std::string only;    ///< stability, validation, solver: cases whose name holds this; empty: all
   double soak = 60;    ///< stability: simulated time of the random dragging [s]
 };
 
