@@ -6,8 +6,9 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices. A − M, M the masses, is positive
-/// semi-definite, and a sum of terms that are 0 where all vertices move alike.
+/// y = (A + Σ contacts w wᵀ⊗H) x restricted to the free vertices. A − M, M the masses, is a sum of
+/// positive semi-definite terms of at most 4 vertices each (the multilevel preconditioner counts on
+/// it).
 struct SystemView : MatrixView {
   View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
   View<const Contact> contacts;
