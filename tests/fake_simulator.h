@@ -98,7 +98,7 @@ class FakeSimulator : public Simulator {
   }
   Snapshot snapshot() const override {
     check_device();
-    return {step_, time_, positions_, velocities_};
+    return {step_, time_, positions_, velocities_, {}};
   }
   void restore(const Snapshot& snapshot) override {
     check_device();
