@@ -14,6 +14,7 @@ struct ConjugateGradients {
   Preconditioner precondition;
   View<const Vec3r> b;
   View<Vec3r> x, r, z, p, q;
+  View<Vec3r> best;     ///< x of the smallest true residual seen
   View<Vec3r> contact;  ///< H Σ w p of each contact
   double tolerance;
   int max_iterations;
@@ -74,12 +75,15 @@ struct ConjugateGradients {
   template <class Team>
   ICLOTH_HD LinearSolution iterate(Team& team, double bb) const {
     constexpr int kReplaceEvery = 50;  // iterations between true residuals
+    constexpr int kPatience = 40;      // true residuals in a row without gain: rounding rules
     const Index n = b.size();
     LinearSolution result;
     multiply(team, x);
     Dots dots = precondition(
         team, [&](Index i) { return true_residual(i); }, r, z);
-    team.for_each(n, [&](Index i) { p[i] = z[i]; });
+    team.for_each(n, [&](Index i) { p[i] = z[i], best[i] = x[i]; });
+    double best_rr = dots.rr;
+    int idle = 0;
     while (result.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {
       const double pq = multiply(team, p.sub(0, n));
       if (!(pq > 0) || !(dots.rz > 0)) break;  // rounding has eaten the curvature, or NaN
@@ -90,6 +94,12 @@ struct ConjugateGradients {
         multiply(team, x);
         dots = precondition(
             team, [&](Index i) { return true_residual(i); }, r, z);
+        if (dots.rr < best_rr) {
+          best_rr = dots.rr, idle = 0;
+          team.for_each(n, [&](Index i) { best[i] = x[i]; });
+        } else if (++idle == kPatience) {
+          break;
+        }
       } else {
         dots = precondition(
             team,
@@ -110,7 +120,9 @@ struct ConjugateGradients {
           return dot_double(residual, residual);
         },
         Sum{});
-    result.residual = std::sqrt(rr / bb);
+    // In single precision a very stiff system can run away from the solution.
+    if (!(rr <= best_rr)) team.for_each(n, [&](Index i) { x[i] = best[i]; });
+    result.residual = std::sqrt((rr <= best_rr ? rr : best_rr) / bb);
     return result;
   }
 };
@@ -126,33 +138,46 @@ double bytes_per_iteration(const SystemView& system, Index rows) {
              (15 * sizeof(Vec3r) + sizeof(Mat3r) + sizeof(Real) + 3 * sizeof(Index));
 }
 
+/// The residual that the iterations carry along differs from the true one by rounding.
+constexpr double kMissed = 1.5;
+
 }  // namespace
 
 LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                                    View<const Vec3r> b, View<Vec3r> padded,
                                    const SolveOptions& options) {
   const Index n = b.size(), contacts = system.contacts.size();
-  for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_}) a->resize(n + kPadding);
+  for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_, &best_}) a->resize(n + kPadding);
   contact_.resize(contacts);
   solution_.resize(1);
-  const auto iterate = [&](const auto& preconditioner) {
+  const auto iterate = [&](const auto& preconditioner, int max_iterations) {
     with_device_team("implicit.solve", std::max(n, contacts),
                      ConjugateGradients<std::decay_t<decltype(preconditioner)>>{
                          system, preconditioner, b, padded.sub(0, n), r_.view().sub(0, n),
-                         z_.view().sub(0, n), p_.view(), q_.view(), contact_.view(),
-                         options.tolerance, options.max_iterations, solution_.view()});
+                         z_.view().sub(0, n), p_.view(), q_.view(), best_.view(), contact_.view(),
+                         options.tolerance, max_iterations, solution_.view()});
   };
-  double bytes = bytes_per_iteration(system, n);
+  const auto finish = [&] {
+    LinearSolution solution;
+    solution_.download_range(0, {&solution, 1});
+    return solution;
+  };
+  const double bytes = bytes_per_iteration(system, n);
+  LinearSolution coarse;
   if (options.preconditioner == Preconditioner::multilevel) {
     hierarchy_.fill(system);
-    iterate(hierarchy_.view(system, inverse_diagonal));
-    bytes += hierarchy_.bytes();
-  } else {
-    iterate(BlockJacobi{inverse_diagonal});
+    iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
+    coarse = finish();
+    coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());
+    // Where rounding hides the masses in the sums of a level, block-Jacobi gets further.
+    if (!(coarse.residual > kMissed * options.tolerance) ||
+        coarse.iterations >= options.max_iterations)
+      return coarse;
   }
-  LinearSolution solution;
-  solution_.download_range(0, {&solution, 1});
-  solution.bytes = solution.iterations * bytes;
+  iterate(BlockJacobi{inverse_diagonal}, options.max_iterations - coarse.iterations);
+  LinearSolution solution = finish();
+  solution.bytes = coarse.bytes + solution.iterations * bytes;
+  solution.iterations += coarse.iterations;
   return solution;
 }
 

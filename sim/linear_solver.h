@@ -28,13 +28,13 @@ class LinearSolver {
 
   /// Solves for x (Δv), starting from what it holds; `inverse_diagonal`: of the whole system's
   /// diagonal blocks, 0 for prescribed vertices (rows). x is given with kPadding elements more
-  /// than b.
+  /// than b. The result is never further from the solution, by its residual, than the start.
   LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                        View<const Vec3r> b, View<Vec3r> padded, const SolveOptions& options);
 
  private:
   Hierarchy hierarchy_;
-  Array<Vec3r> r_, z_, p_, q_;
+  Array<Vec3r> r_, z_, p_, q_, best_;
   Array<Vec3r> contact_;  ///< H Σ w p of each contact
   Array<LinearSolution> solution_;
 };

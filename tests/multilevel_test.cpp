@@ -245,6 +245,20 @@ TEST(Multilevel, GivesTheSameBitsWithAnyNumberOfThreads) {
   EXPECT_TRUE(results[0] == results[1]);
 }
 
+/// Beyond what single precision resolves (masses below the rounding of the stiffness) a solve must
+/// not run away.
+TEST(Multilevel, NeverEndsWorseThanItStarted) {
+  for (const Preconditioner preconditioner :
+       {Preconditioner::block_jacobi, Preconditioner::multilevel}) {
+    for (const Real stiffness : {Real(1e6), Real(1e8), Real(1e10)}) {
+      Sheets sheets(12, 1, stiffness);
+      const LinearSolution solution = sheets.solve(preconditioner, 1e-5);
+      EXPECT_LE(solution.residual, 1.0) << stiffness;
+      for (const Vec3r& v : sheets.x.download()) EXPECT_TRUE(norm(v) < 1e6) << stiffness;
+    }
+  }
+}
+
 TEST(Multilevel, SolvesWhatHasNoLevels) {
   Sheets nothing(0, 1, 1), vertex(1, 1, 1), pieces(1, 300, 1), pairs(2, 200, 100);
   EXPECT_EQ(nothing.solve(Preconditioner::multilevel).iterations, 0);
