@@ -78,7 +78,7 @@ ICLOTH_HD inline Friction friction_of(const Contact& c, const ContactLaw& law, V
 /// The motion of a contact in a step [m].
 struct ContactMotion {
   Vec3r free;  ///< Σ w (x1 − x0) with Δv = 0
-  Vec3r end;   ///< the same as expected (from gravity alone) or as solved
+  Vec3r end;   ///< the same as solved; before that, as expected, equal to free
   bool solved;
 };
 
@@ -98,9 +98,9 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
   if (c.friction > 0) {
     const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
     Real normal = normal_force(c, law, motion.end);
-    if (!motion.solved) {
+    if (!motion.solved || last.active == 0) {
       // What the present compression carries, and what stops the approach.
-      const Real stop = std::fmax(-approach, Real(0)) / (law.dt * law.dt * inverse_mass);
+      const Real stop = std::fmax(-dot(n, motion.end), Real(0)) / (law.dt * law.dt * inverse_mass);
       normal = std::fmin(normal, carried + stop);
     }
     const Real limit = c.friction * normal;
@@ -134,11 +134,11 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
   return t;
 }
 
-/// Tangential force with which the linear term acts when the motion came out as `motion` [N].
-ICLOTH_HD inline Vec3r applied_friction(const Contact& c, const ContactTerm& t,
-                                        const ContactLaw& law, Vec3r free, Vec3r motion) {
-  const Vec3r dv = (Real(1) / law.dt) * (motion - free);
-  return tangential(c, (Real(1) / law.dt) * (t.impulse - multiply(t, dv)));
+/// Force with which the linear term acted when the motion came out as motion.end [N].
+ICLOTH_HD inline Vec3r applied_force(const ContactTerm& t, const ContactLaw& law,
+                                     const ContactMotion& motion) {
+  const Vec3r dv = (Real(1) / law.dt) * (motion.end - motion.free);
+  return (Real(1) / law.dt) * (t.impulse - multiply(t, dv));
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -1,6 +1,8 @@
 #include "sim/implicit.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <tuple>
 
 #include "kernels/parallel.h"
@@ -56,21 +58,21 @@ struct AssembleRow {
   }
 };
 
-/// Motion of the vertices in the step: known, and with what the solve adds.
+/// Motion of the vertices in the step: as they move now, and with what the solve adds.
 struct VertexMotion {
   View<const Vec3r> free;  ///< x1 − x0 with Δv = 0 [m] (vertices)
   View<const Vec3r> dv;    ///< (cloth vertices)
   View<const Real> inverse_mass;
-  Vec3r fall;  ///< what gravity adds to the motion in the step [m]
   Real dt;
   bool solved;
 
   ICLOTH_HD ContactMotion of(const Contact& c) const {
     ContactMotion motion{apply(c.s, free), {}, solved};
     motion.end = motion.free;
+    if (!solved) return motion;
     for (int a = 0; a < 4; ++a) {
       const Index i = c.s.v[a];
-      if (inverse_mass[i] > 0) motion.end += c.s.w[a] * (solved ? dt * dv[i] : fall);
+      if (inverse_mass[i] > 0) motion.end += (dt * c.s.w[a]) * dv[i];
     }
     return motion;
   }
@@ -92,17 +94,15 @@ struct ContactTerms {
 
 /// How far a solve contradicts what was assumed for it.
 struct Contradiction {
-  Index contacts;         ///< that open or close by so much that it matters
-  double error, bearing;  ///< friction applied wrongly, and the most there can be [N]
+  double error;  ///< contact forces that acted and should not have, or the other way round [N]
+  double load;   ///< what the contacts carry [N]
   ICLOTH_HD friend Contradiction operator+(Contradiction a, Contradiction b) {
-    return {a.contacts + b.contacts, a.error + b.error, a.bearing + b.bearing};
+    return {a.error + b.error, a.load + b.load};
   }
-  bool matters() const { return contacts > 0 || error > kFrictionError * bearing; }
-  static constexpr double kFrictionError = 0.02;
 };
 
-/// A contact contradicts when it was left out and has closed to a quarter of the thickness, or
-/// pulls from twice the thickness; friction, when it differs from the law at the solved motion.
+/// A contact contradicts by what the linear term applied in place of the law's force at the solved
+/// motion: it pulled, was left out and has closed, slid and was to stick, or the other way round.
 struct Contradicts {
   VertexMotion motion;
   ContactLaw law;
@@ -112,20 +112,10 @@ struct Contradicts {
   ICLOTH_HD Contradiction operator()(Index i) const {
     const Contact& c = contacts[i];
     const ContactMotion m = motion.of(c);
-    const Real gap = end_gap(c, m.end);
-    Contradiction result{0, 0, 0};
-    if (term[i].active == 0) {
-      result.contacts = gap < Real(0.25) * c.thickness ? 1 : 0;
-      return result;
-    }
-    result.contacts = gap > 2 * c.thickness ? 1 : 0;
-    if (!(c.friction > 0)) return result;
     const Real normal = normal_force(c, law, m.end);
-    const Vec3r wrong =
-        applied_friction(c, term[i], law, m.free, m.end) - friction_of(c, law, m.end, normal).force;
-    result.error = static_cast<double>(norm(wrong));
-    result.bearing = static_cast<double>(c.friction * normal);
-    return result;
+    Vec3r wrong = applied_force(term[i], law, m) - normal * c.normal;
+    if (c.friction > 0) wrong = wrong - friction_of(c, law, m.end, normal).force;
+    return {static_cast<double>(norm(wrong)), static_cast<double>(normal)};
   }
 };
 
@@ -189,21 +179,27 @@ struct Ahead {
   ICLOTH_HD void operator()(Index i) const { ahead[i] = -dt * dv[i]; }
 };
 
-/// Strain of second order in the motion since the point of linearisation, ½ ΔFᵀΔF at its largest.
-struct UnseenStrain {
+/// What the strain of second order in the motion since the point of linearisation, ½ ΔFᵀΔF, makes
+/// of tension: the linear solve did not see it.
+struct MissedTension {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
   Linearization point;
   View<const Vec3r> dv;
 
   ICLOTH_HD Real operator()(Index i) const {
-    Vec3r motion[3];
+    Vec3r start[3], motion[3];
     for (int a = 0; a < 3; ++a) {
       const Index v = face[i].v[a];
+      start[a] = point.start[v];
       motion[a] = point.ahead[v] + point.dt * dv[v];
     }
+    const Stiffness k =
+        stiffness_at(fabric[face_fabric[i]], green_strain(face_frame(start, inverse[i].m)));
     const FaceFrame change = face_frame(motion, inverse[i].m);
-    return Real(0.5) * std::fmax(norm2(change.fu), norm2(change.fv));
+    return Real(0.5) * std::fmax(k.k11 * norm2(change.fu), k.k22 * norm2(change.fv));
   }
 };
 
@@ -307,9 +303,8 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   for (int iteration = 0;; ++iteration) {
     assemble(step, point);
     solve_with_contacts(step, proximity, iteration > 0);
-    const Real error = move(step, point);
-    if (iteration + 1 >= p.newton_iterations || !(error > static_cast<Real>(p.newton_tolerance)))
-      break;
+    missed_tension_ = move(step, point);
+    if (iteration + 1 >= p.newton_iterations || !(missed_tension_ > p.newton_tolerance)) break;
     at_.copy_from(s.candidate);
     ahead_.resize(mesh.cloth_vertices);
     for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), step.dt});
@@ -331,12 +326,7 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
   const SystemView system{matrix_.view(),        s.inverse_mass.view(), contacts.view(),
                           contact_terms_.view(), incidence.first(),     incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
-  VertexMotion motion{free_motion_.view(),
-                      dv_.view(),
-                      s.inverse_mass.view(),
-                      step.dt * step.dt * step.gravity(),
-                      step.dt,
-                      solved};
+  VertexMotion motion{free_motion_.view(), dv_.view(), s.inverse_mass.view(), step.dt, solved};
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
@@ -355,22 +345,24 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     ++step.report.newton_iterations;
     motion.solved = true;
     const Contradiction contradiction =
-        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
+        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0},
                Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
-    if (!contradiction.matters()) break;
+    if (!(contradiction.error > step.parameters.contact_tolerance * contradiction.load)) break;
   }
 }
 
-/// Writes x1; returns the largest strain that the linearisation did not see.
-Real Implicit::move(StepContext& step, const Linearization& point) {
+/// Writes x1; returns the largest tension that the linearisation missed [N/m].
+double Implicit::move(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   State& s = step.state;
   for_each("implicit.move", mesh.cloth_vertices,
            MoveVertices{s.x0.view(), free_motion_.view(), dv_.view(), s.x1.view(),
                         s.candidate.view(), step.dt});
-  if (step.parameters.newton_iterations == 1) return 0;
-  return reduce("implicit.unseen_strain", mesh.cloth_faces, Real(0),
-                UnseenStrain{mesh.face.view(), mesh.face_inverse.view(), point, dv_.view()}, Max{});
+  return static_cast<double>(
+      reduce("implicit.missed_tension", mesh.cloth_faces, Real(0),
+             MissedTension{mesh.face.view(), mesh.face_inverse.view(), mesh.face_fabric.view(),
+                           mesh.fabric.view(), point, dv_.view()},
+             Max{}));
 }
 
 }  // namespace icloth::ICLOTH_BUILD

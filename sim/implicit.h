@@ -22,10 +22,13 @@ class Implicit {
   /// Writes state.candidate and the cloth part of state.x1.
   void integrate(StepContext& step, const Proximity& proximity);
 
+  /// Largest tension that the last linearisation missed [N/m].
+  double missed_tension() const { return missed_tension_; }
+
  private:
   void assemble(StepContext& step, const Linearization& point);
   void solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved);
-  Real move(StepContext& step, const Linearization& point);
+  double move(StepContext& step, const Linearization& point);
 
   BlockMatrix matrix_;
   /// Which element blocks add up to a stored block: 9·face + 3a + b, 16·hinge + 4a + b.
@@ -37,6 +40,7 @@ class Implicit {
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
   Array<Vec3r> free_motion_;             ///< x1 − x0 with Δv = 0 [m] (vertices)
   Array<Vec3r> at_, ahead_;  ///< of the linearisation, from the second iteration (cloth_vertices)
+  double missed_tension_ = 0;
   LinearSolver solver_;
 };
 

@@ -42,9 +42,11 @@ struct Parameters {
   Preconditioner preconditioner = Preconditioner::multilevel;
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
-  int contact_passes = 4;
-  int newton_iterations = 1;
-  double newton_tolerance = 1e-3;
+  int contact_passes = 6;
+  double contact_tolerance = 1e-3;
+  int newton_iterations = 3;
+  double newton_tolerance = 1;
+  double max_missed_tension = 1e3;
   // broad phase
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
   int rebuild_interval = 16;

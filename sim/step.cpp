@@ -45,6 +45,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   report.finite = all_finite(state_);
   if (!report.finite) return false;
+  // Half the step makes a quarter of the strain that a linear solve does not see.
+  if (!last_resort && implicit_.missed_tension() > parameters_.max_missed_tension) return false;
 
   return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
 }
