@@ -20,11 +20,11 @@ std::string number(double value) {
   return text;
 }
 
-constexpr double kFirstShortening = 0.01, kLastShortening = 0.32, kLastTime = 4;
+constexpr double kFirstShortening = 0.01, kLastShortening = 0.32, kLastTime = 3.3;
 
 /// A weightless strip clamped upright at its upper end, already buckled a little, above a ground
 /// that rises slowly after 0.3 s; the friction is 1 to begin with.
-std::shared_ptr<Scene> pressed_strip(const Strip& strip) {
+std::shared_ptr<Scene> pressed_strip(const Strip& strip, double last_shortening) {
   const double modulus = 1e-5, row = strip.row_height(), length = strip.length - 0.5 * row;
   auto scene = exact_scene("pressed strip");
   Parameters& p = scene->parameters;
@@ -50,18 +50,18 @@ std::shared_ptr<Scene> pressed_strip(const Strip& strip) {
   Obstacle ground;
   ground.name = "ground";
   ground.mesh = make_plane(0.2, 0.05, 0.05);
-  const double rise = (kLastShortening + 0.01 - kFirstShortening) * length;
+  const double rise = (last_shortening - kFirstShortening) * length;
   ground.motion = {{0, {0, 0, 0}, {}}, {0.3, {0, 0, 0}, {}}, {kLastTime, {0, rise, 0}, {}}};
   scene->obstacles = {ground};
   return scene;
 }
 
-/// Shortening, in lengths, at which the tip has moved by 5·10⁻⁴ lengths; the last one
-/// when it has not moved until then.
-double first_slip(CaseRun& run, double friction) {
+/// Shortening, in lengths, at which the tip has moved by 5·10⁻⁴ lengths; the last one when it has
+/// not moved until then.
+double first_slip(CaseRun& run, double friction, double last_shortening) {
   const Strip strip{0.1, 40, 2};
   const double length = strip.length - 0.5 * strip.row_height();
-  run.start(pressed_strip(strip));
+  run.start(pressed_strip(strip, last_shortening));
   const double clamp =
       0.5 * (row_mean(strip, run.positions(), 0).y + row_mean(strip, run.positions(), 1).y);
   run.steps(20);
@@ -71,7 +71,7 @@ double first_slip(CaseRun& run, double friction) {
   run.steps(16);
   const double stuck = row_mean(strip, run.positions(), strip.rows).x;
   double shortening = 0;
-  while (shortening < kLastShortening && run.simulator().time() < kLastTime) {
+  while (run.simulator().time() < kLastTime) {
     run.step();
     const Vec3d tip = row_mean(strip, run.positions(), strip.rows);
     shortening = 1 - (clamp - tip.y) / length;
@@ -170,19 +170,20 @@ double sliding_friction(CaseRun& run, const Strip& strip, double expected) {
 /// 40 rows, shortening at which the tip has moved by 5·10⁻⁴ L.
 void stick_slip(CaseRun& run) {
   const std::vector<double> frictions = run.brief() ? std::vector{0.2} : std::vector{0.1, 0.2, 0.3};
-  for (const double friction : frictions)
-    run.compare("shortening at first slip, mu = " + number(friction), slip_shortening(friction),
-                first_slip(run, friction), 0.05);
-  if (!run.brief()) {
-    const double reached = first_slip(run, 0.4);
-    run.require(reached >= kLastShortening, "mu = 0.4 does not slip, but did at " + number(reached));
+  for (const double friction : frictions) {
+    const double expected = slip_shortening(friction);
+    run.compare("shortening at first slip, mu = " + number(friction), expected,
+                first_slip(run, friction, 1.2 * expected), 0.05);
   }
+  if (run.brief()) return;
+  const double reached = first_slip(run, 0.4, kLastShortening);
+  run.require(reached > 0.99 * kLastShortening, "mu = 0.4: no slip, but did at " + number(reached));
 }
 
 /// A belt hangs over a half cylinder with legs of two lengths. Source: Euler and Eytelwein, slips
 /// iff T2/T1 > exp(μπ), here with the weight of the belt itself on the cylinder. Protocol: hangs at
-/// rest with μ = 2, then μ falls slowly; T2/T1 of the legs against what the μ at which the belt moves
-/// by 0.05 mm in 0.1 s holds.
+/// rest with μ = 2, then μ falls slowly; T2/T1 of the legs against what the μ at which the belt
+/// moves by 0.05 mm in 0.1 s holds.
 void belt(CaseRun& run) {
   const std::vector<double> frictions = run.brief() ? std::vector{0.3} : std::vector{0.1, 0.3, 0.5};
   for (const double friction : frictions) {
