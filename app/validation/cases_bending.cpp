@@ -47,10 +47,12 @@ double drop_over_reach(CaseRun& run, double gamma, Index elements) {
 /// that buckles first is left, and it grows by more than 1 when its stiffness is negative.
 double lateral_growth(CaseRun& run, const Strip& strip, const std::vector<Vec3d>& flat, double g) {
   Parameters p = run.parameters();
+  const double slow = std::sqrt(strip.length / g);
   p.gravity_y = -g;
+  p.time_step = 10 * slow;
+  p.newton_iterations = 1;
   run.set_parameters(p);
   run.set_state(flat, {});
-  const double slow = std::sqrt(strip.length / g);
   run.relax(slow, 10 * slow, 1e-9 * strip.length, 200);
   std::vector<Vec3d> x = run.positions();
   for (std::size_t i = 0; i < x.size(); ++i)
