@@ -26,8 +26,10 @@ constexpr Case kCases[] = {
     {"sliding on cloth", "g(sin a - mu cos a) t^2/2", false, sliding_on_cloth},
     {"stopping on a body", "v^2/(2 mu g)", false, stopping_on_body},
     {"stopping on cloth", "v^2/(2 mu g)", false, stopping_on_cloth},
-    {"stick-slip", "elastica; Sano et al. 2017, Romero et al. 2021, test 4", false, stick_slip},
+    {"stick-slip", "elastica; Sano et al. 2017, Romero et al. 2021, test 4", true, stick_slip},
     {"belt", "Euler and Eytelwein: exp(mu pi)", false, belt},
+    {"drape order", "Peirce, Cusick: grows with the bending length", false, drape_order},
+    {"drape band", "Cusick's drapemeter: denim 70 to 90 %", false, drape_band},
 };
 
 }  // namespace

@@ -34,4 +34,8 @@ void stopping_on_cloth(CaseRun& run);
 void stick_slip(CaseRun& run);
 void belt(CaseRun& run);
 
+// cases_drape.cpp: Cusick's drapemeter
+void drape_order(CaseRun& run);
+void drape_band(CaseRun& run);
+
 }  // namespace icloth::validation

@@ -15,8 +15,8 @@ constexpr double kGravity = 9.81;
 /// Of the plate that hinges on equilateral triangles make.
 constexpr double kBendingPoisson = -1.0 / 3;
 
-/// H/W of a strip of `elements` rows under the load Γ = ρ g L³/D. Two rows are clamped; the clamp is
-/// in the middle between them, where the tangent is level.
+/// H/W of a strip of `elements` rows under the load Γ = ρ g L³/D. Two rows are clamped; the clamp
+/// is in the middle between them, where the tangent is level.
 double drop_over_reach(CaseRun& run, double gamma, Index elements) {
   const double length = 0.2, modulus = 1e-5;
   Strip strip;
@@ -27,8 +27,12 @@ double drop_over_reach(CaseRun& run, double gamma, Index elements) {
   const double density = gamma * modulus / (kGravity * std::pow(length, 3));
   auto scene = exact_scene("cantilever");
   scene->parameters.cg_tolerance = 1e-3;  // each step corrects the one before
-  scene->cloths = {strip_cloth(strip, [](double u, double v) { return Vec3d{v, 0, u}; },
-                               plain_fabric(4e9 * modulus, 0, density, modulus))};
+  scene->cloths = {strip_cloth(
+      strip,
+      [](double u, double v) {
+        return Vec3d{v, 0, u};
+      },
+      plain_fabric(4e9 * modulus, 0, density, modulus))};
   pin_row(scene->cloths[0], strip, 0);
   pin_row(scene->cloths[0], strip, 1);
   run.start(scene);
@@ -39,14 +43,16 @@ double drop_over_reach(CaseRun& run, double gamma, Index elements) {
 }
 
 /// By how much a small lateral deflection of a strip on edge grows in a damped Newton step under
-/// gravity g. Such a step maps z to (1 − (K⁺ + M/dt²)⁻¹ K) z: after a few of them only the mode that
-/// buckles first is left, and it grows by more than 1 when its stiffness is negative.
+/// gravity g. Such a step maps z to (1 − (K⁺ + M/dt²)⁻¹ K) z: after a few of them only the mode
+/// that buckles first is left, and it grows by more than 1 when its stiffness is negative.
 double lateral_growth(CaseRun& run, const Strip& strip, const std::vector<Vec3d>& flat, double g) {
   Parameters p = run.parameters();
+  const double slow = std::sqrt(strip.length / g);
   p.gravity_y = -g;
+  p.time_step = 10 * slow;
+  p.newton_iterations = 1;
   run.set_parameters(p);
   run.set_state(flat, {});
-  const double slow = std::sqrt(strip.length / g);
   run.relax(slow, 10 * slow, 1e-9 * strip.length, 200);
   std::vector<Vec3d> x = run.positions();
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -69,8 +75,12 @@ double buckling_load(CaseRun& run, const Strip& strip, double expected) {
   const double row = strip.row_height(), length = strip.length - 0.5 * row;
   auto scene = exact_scene("lateral buckling");
   scene->parameters.cg_tolerance = 1e-6;
-  scene->cloths = {strip_cloth(strip, [&](double u, double v) { return Vec3d{v - row / 2, u, 0}; },
-                               plain_fabric(1e3 * modulus / (row * row), 0, density, modulus))};
+  scene->cloths = {strip_cloth(
+      strip,
+      [&](double u, double v) {
+        return Vec3d{v - row / 2, u, 0};
+      },
+      plain_fabric(1e3 * modulus / (row * row), 0, density, modulus))};
   pin_row(scene->cloths[0], strip, 0);
   pin_row(scene->cloths[0], strip, 1);
   run.start(scene);
@@ -91,8 +101,8 @@ double buckling_load(CaseRun& run, const Strip& strip, double expected) {
 /// A strip clamped level bends down under its weight. Source: the heavy elastica (Romero et al.
 /// 2021, "Physical validation of simulators in computer graphics", test 1), H/W of the tip as a
 /// function of Γ = ρ g L³/D alone. Protocol: L = 0.2 m, equilateral triangles, half as wide as
-/// long and practically inextensible, which keeps the strip a cylinder, at rest. The order is that of
-/// the differences between 10, 20 and 40 elements.
+/// long and practically inextensible, which keeps the strip a cylinder, at rest. The order is that
+/// of the differences between 10, 20 and 40 elements.
 void cantilever(CaseRun& run) {
   const std::vector<double> loads = run.brief() ? std::vector{10.0} : std::vector{1.0, 10.0, 100.0};
   for (const double gamma : loads) {
@@ -119,8 +129,7 @@ void cantilever(CaseRun& run) {
 /// grows nor shrinks, by the secant method, for widths of 0.15 L and 0.08 L, continued to 0 (the
 /// clamp keeps a wide strip from warping and so shortens it).
 void lateral_buckling(CaseRun& run) {
-  const double reference =
-      12.854 * (1 - kBendingPoisson) * std::sqrt(2 * (1 + kBendingPoisson));
+  const double reference = 12.854 * (1 - kBendingPoisson) * std::sqrt(2 * (1 + kBendingPoisson));
   const Index columns = 6;
   const Strip wide{0.2, 15 * columns / 2, columns}, narrow{0.2, 15 * columns, columns};
   const double loads[2] = {buckling_load(run, wide, reference),

@@ -26,8 +26,12 @@ struct Patch {
 Cloth pinned_ground(double edge) {
   const Index rows = static_cast<Index>(std::lround(1.4 / (edge * std::sqrt(0.75))));
   const Strip strip{1.4, rows, static_cast<Index>(std::lround(0.3 / edge))};
-  Cloth ground = strip_cloth(strip, [](double u, double v) { return Vec3d{v - 0.3, 0, u}; },
-                             plain_fabric(1000, 0.25, 0.2, 1e-5));
+  Cloth ground = strip_cloth(
+      strip,
+      [](double u, double v) {
+        return Vec3d{v - 0.3, 0, u};
+      },
+      plain_fabric(1000, 0.25, 0.2, 1e-5));
   ground.name = "ground";
   for (Index v = 0; v < strip.vertices(); ++v) ground.pins.push_back(v);
   return ground;
@@ -116,8 +120,7 @@ std::string number(double value) {
 }
 
 void threshold(CaseRun& run, Ground ground) {
-  const std::vector<double> frictions =
-      run.brief() ? std::vector{0.3} : std::vector{0.1, 0.3, 0.6};
+  const std::vector<double> frictions = run.brief() ? std::vector{0.3} : std::vector{0.1, 0.3, 0.6};
   for (const double friction : frictions) {
     const std::string mu = ", mu = " + number(friction);
     Patch patch;
@@ -129,7 +132,8 @@ void threshold(CaseRun& run, Ground ground) {
     const double before = motion(run).place;
     run.steps(10);
     run.bound("creep at 0.99 mu after 1 s [m/s]" + mu, (motion(run).place - before) / 0.05, 1e-4);
-    run.compare("way in 1 s at 1.01 mu [m]" + mu, coulomb_way(1.01 * friction, friction, 1, patch.dt),
+    run.compare("way in 1 s at 1.01 mu [m]" + mu,
+                coulomb_way(1.01 * friction, friction, 1, patch.dt),
                 slide(run, patch, 1.01 * friction, 1), 0.25);
   }
 }
@@ -185,10 +189,10 @@ void stopping(CaseRun& run, Ground ground) {
 
 }  // namespace
 
-/// A patch of cloth on an inclined ground, an obstacle or a pinned cloth. Source: Coulomb's law with
-/// equal static and kinetic coefficients: at rest iff tan α ≤ μ. Protocol: the patch settles on the
-/// level ground, then gravity turns at once. At tan α = 0.99 μ the mean speed after 1 s; at 1.01 μ
-/// the way in 1 s (1 % of friction is all of it, hence the wide target).
+/// A patch of cloth on an inclined ground, an obstacle or a pinned cloth. Source: Coulomb's law
+/// with equal static and kinetic coefficients: at rest iff tan α ≤ μ. Protocol: the patch settles
+/// on the level ground, then gravity turns at once. At tan α = 0.99 μ the mean speed after 1 s;
+/// at 1.01 μ the way in 1 s (1 % of friction is all of it, hence the wide target).
 void threshold_on_body(CaseRun& run) { threshold(run, Ground::obstacle); }
 void threshold_on_cloth(CaseRun& run) { threshold(run, Ground::cloth); }
 

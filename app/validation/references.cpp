@@ -64,6 +64,15 @@ std::array<double, N> newton_step(const Function& residual, std::array<double, N
   return u;
 }
 
+/// θ, θ', ∫ sin θ and ∫ cos θ of the pressed strip at arc length s.
+std::array<double, 4> pressed_end(const PressedElastica& e, double s) {
+  using State = std::array<double, 4>;
+  return integrate<4>({0, e.curvature, 0, 0}, 200, [&](double, const State& y) -> State {
+    const double sine = std::sin(y[0]), cosine = std::cos(y[0]);
+    return {s * y[1], s * (-e.pressure * sine + e.sideways * cosine), s * sine, s * cosine};
+  });
+}
+
 }  // namespace
 
 double hanging_elongation(double length, double density, double gravity, double tensile) {
@@ -110,27 +119,30 @@ HeavyElastica heavy_elastica(double gamma) {
   return {end[3], end[2], std::numbers::pi / 2 - std::exp(log_tip)};
 }
 
+double PressedElastica::friction() const { return std::fabs(sideways) / pressure; }
+
 PressedElastica pressed_elastica(double shortening) {
-  // Unknown: curvature at the clamp, P and Q. Newton with differences, from the buckled shape of a
-  // small shortening on; the branch turns smoothly.
-  using State = std::array<double, 4>;   // θ, θ', ∫ sin θ, ∫ cos θ
-  using Vector = std::array<double, 3>;  // unknowns; residuals
+  // Newton with differences, from the buckled shape of a small shortening on; the branch turns
+  // smoothly. A clamped and hinged strip buckles at P = 4.4934².
+  using Vector = std::array<double, 3>;
   const auto residual = [](const Vector& u, double wanted) -> Vector {
-    const State end = integrate<4>({0, u[0], 0, 0}, 200, [&](double, const State& y) -> State {
-      return {y[1], -u[1] * std::sin(y[0]) + u[2] * std::cos(y[0]), std::sin(y[0]),
-              std::cos(y[0])};
-    });
+    const auto end = pressed_end({u[0], u[1], u[2]}, 1);
     return {end[1], end[2], end[3] - (1 - wanted)};
   };
-  // A clamped and hinged strip buckles at P = 4.4934².
   constexpr int kStages = 15;
   const double first = std::min(1e-4, shortening);
-  Vector u{4.4934 * 4.4934 * std::sqrt(first) * 0.4, 20.19, -20.19 * 0.445 * std::sqrt(first)};
+  Vector u{8 * std::sqrt(first), 20.19, -9 * std::sqrt(first)};
   for (int stage = 0; stage <= kStages; ++stage) {
-    const double wanted = first + (shortening - first) * std::pow(stage / double(kStages), 2);
+    const double share = static_cast<double>(stage) / kStages;
+    const double wanted = first + (shortening - first) * share * share;
     for (int k = 0; k < 6; ++k) u = newton_step<3>(residual, u, wanted);
   }
-  return {u[1], std::fabs(u[2]) / u[1]};
+  return {u[0], u[1], u[2]};
+}
+
+std::array<double, 2> pressed_point(const PressedElastica& elastica, double s) {
+  const auto end = pressed_end(elastica, s);
+  return {end[2], end[3]};
 }
 
 double belt_leg(double friction, double leg, double radius) {

@@ -32,14 +32,19 @@ HeavyElastica heavy_elastica(double gamma);
 /// come closer by `shortening` lengths: θ'' = −P sin θ + Q cos θ, θ(0) = 0, θ'(1) = 0, ∫ sin θ = 0,
 /// ∫ cos θ = 1 − shortening.
 struct PressedElastica {
-  double pressure;  ///< P, in D/L² per width
-  double friction;  ///< |Q|/P, the coefficient that is needed
+  double curvature;         ///< θ'(0), in 1/L
+  double pressure;          ///< P, in D/L² per width
+  double sideways;          ///< Q, in D/L² per width
+  double friction() const;  ///< |Q|/P, the coefficient that is needed
 };
 PressedElastica pressed_elastica(double shortening);
+/// Its point at arc length s, in lengths from the clamp: across and along the clamp's direction.
+std::array<double, 2> pressed_point(const PressedElastica& elastica, double s);
 
 /// A belt with weight, of line density ρ, over a half cylinder; at the verge of sliding towards its
-/// heavy leg, with N = T/r + ρ g sin φ: dT/dφ = μT + ρ g r (cos φ + μ sin φ) from one leg to the other.
-/// Length of the heavy leg that just holds, for the other leg's and the radius r of the belt [m].
+/// heavy leg, with N = T/r + ρ g sin φ: dT/dφ = μT + ρ g r (cos φ + μ sin φ) from one leg to the
+/// other. Length of the heavy leg that just holds, for the other leg's and the radius r of the belt
+/// [m].
 double belt_leg(double friction, double leg, double radius);
 /// Friction that just holds the two legs.
 double belt_friction(double light_leg, double heavy_leg, double radius);

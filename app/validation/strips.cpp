@@ -31,6 +31,8 @@ std::shared_ptr<Scene> exact_scene(const char* name) {
   p.proximity_enabled = false;
   p.cg_tolerance = 1e-10;
   p.cg_max_iterations = 20000;
+  p.newton_iterations = 20;
+  p.newton_tolerance = 1e-10;
   p.max_travel = 1e9;
   p.max_substep_levels = 0;
   return scene;
