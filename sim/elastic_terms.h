@@ -36,6 +36,8 @@ struct Linearization {
   View<const Vec3r> v;      ///< before the step [m/s]
   Real dt;                  ///< [s]
 
+  /// After the first of several iterations.
+  ICLOTH_HD bool moved() const { return at.data() != start.data(); }
   /// What K is multiplied with on the right-hand side, ahead + d v [m].
   ICLOTH_HD Vec3r lead(Index i, Real damping) const { return ahead[i] + damping * v[i]; }
 };
@@ -57,13 +59,18 @@ struct MembraneTerms {
     const auto corners = [&](View<const Vec3r> x, Vec3r out[3]) {
       for (int a = 0; a < 3; ++a) out[a] = x[f.v[a]];
     };
-    Vec3r start[3], at[3], v[3];
-    corners(point.start, start);
+    Vec3r at[3], v[3];
     corners(point.at, at);
     corners(point.v, v);
     const FaceFrame frame = face_frame(at, inverse[i].m);
     const Sym2 g = green_strain(frame);
-    const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
+    Sym2 start_strain = g;
+    if (point.moved()) {
+      Vec3r start[3];
+      corners(point.start, start);
+      start_strain = green_strain(face_frame(start, inverse[i].m));
+    }
+    const Stiffness k = stiffness_at(cloth, start_strain);
     const StrainLimit limit = strain_limit(cloth, g);
     Sym2 s = stress(k, g);
     if (limit.active) s = s + limit_stress(limit);
@@ -107,6 +114,11 @@ struct MembraneTerms {
   }
 };
 
+ICLOTH_HD inline HingeAngle hinge_angle_of(const HingeRest& h, View<const Vec3r> x) {
+  const Vec3r xs[4] = {x[h.v.v[0]], x[h.v.v[1]], x[h.v.v[2]], x[h.v.v[3]]};
+  return hinge_angle(xs);
+}
+
 struct BendingTerms {
   View<const HingeRest> hinge;
   View<const Fabric> fabric;
@@ -116,11 +128,10 @@ struct BendingTerms {
 
   ICLOTH_HD void operator()(Index i) const {
     const HingeRest& h = hinge[i];
-    Vec3r start[4], at[4];
-    for (int a = 0; a < 4; ++a) start[a] = point.start[h.v.v[a]], at[a] = point.at[h.v.v[a]];
-    const HingeAngle angle = hinge_angle(at);
+    const HingeAngle angle = hinge_angle_of(h, point.at);
+    const Real start = point.moved() ? hinge_angle_of(h, point.start).theta : angle.theta;
     const Fabric &f0 = fabric[h.fabric0], &f1 = fabric[h.fabric1];
-    const Real k = hinge_stiffness(f0, f1, h, hinge_angle(start).theta);
+    const Real k = hinge_stiffness(f0, f1, h, start);
     const Real damping = std::fmin(f0.damping, f1.damping) + damping_extra;
     Real lead = 0;
     for (int a = 0; a < 4; ++a) lead += dot(angle.gradient[a], point.lead(h.v.v[a], damping));

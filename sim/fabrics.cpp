@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernels/parallel.h"
+#include "sim/plates.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -36,6 +37,13 @@ Fabric make_fabric(const Material& material, const Parameters& p) {
   return f;
 }
 
+bool bends(const Fabric& f) {
+  for (const auto& row : f.bending)
+    for (const Real k : row)
+      if (k > 0) return true;
+  return false;
+}
+
 }  // namespace
 
 void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parameters) {
@@ -54,6 +62,26 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
     fabrics[i].table = first;
   }
   mesh.fabric.upload(fabrics);
+  mesh.bends = std::ranges::any_of(fabrics, bends);
+}
+
+void upload_plates(Topology& mesh, const World& world) {
+  if (mesh.plate.size() == mesh.cloth_faces) return;
+  std::vector<PlateRest> plates;
+  std::vector<HingeSlots> slots(world.hinges.size(), HingeSlots{{-1, -1}});
+  for (const FacePlate& plate : make_plates(world)) {
+    PlateRest rest{};
+    for (std::size_t i = 0; i < 9; ++i) rest.w[i] = real(plate.w[i]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Index hinge = rest.hinge[a] = plate.hinge[a];
+      if (hinge < 0) continue;
+      HingeSlots& slot = slots[static_cast<std::size_t>(hinge)];
+      slot.slot[slot.slot[0] < 0 ? 0 : 1] = static_cast<Index>(3 * plates.size() + a);
+    }
+    plates.push_back(rest);
+  }
+  mesh.plate.upload(plates);
+  mesh.hinge_slots.upload(slots);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -209,7 +209,7 @@ struct PatternEntry {
   auto key() const { return std::tuple(row, column, source < 0, source < 0 ? ~source : source); }
 };
 
-std::vector<PatternEntry> pattern_entries(const World& world) {
+std::vector<PatternEntry> pattern_entries(const World& world, bool bending) {
   std::vector<PatternEntry> entries;
   entries.reserve(6 * static_cast<std::size_t>(world.cloth_faces) + 10 * world.hinges.size());
   // The upper half only: row ≤ column.
@@ -221,7 +221,7 @@ std::vector<PatternEntry> pattern_entries(const World& world) {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) add(t[a], t[b], 9 * f + static_cast<Index>(3 * a + b));
   }
-  for (std::size_t h = 0; h < world.hinges.size(); ++h) {
+  for (std::size_t h = 0; bending && h < world.hinges.size(); ++h) {
     const auto& v = world.hinges[h].vertices;
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b) add(v[a], v[b], ~static_cast<Index>(16 * h + 4 * a + b));
@@ -233,8 +233,8 @@ std::vector<PatternEntry> pattern_entries(const World& world) {
 
 }  // namespace
 
-void Implicit::set_up(const World& world) {
-  const std::vector<PatternEntry> entries = pattern_entries(world);
+void Implicit::set_up(const World& world, bool bending) {
+  const std::vector<PatternEntry> entries = pattern_entries(world, bending);
   std::vector<Index> row_first{0}, column, face_first{0}, face_source, hinge_first{0}, hinge_source;
   Index row = 0;
   const auto close_row = [&] { row_first.push_back(static_cast<Index>(column.size())), ++row; };
@@ -261,6 +261,30 @@ void Implicit::set_up(const World& world) {
   hinge_source_.upload(hinge_source);
 }
 
+void Implicit::bend(StepContext& step, const Linearization& point) {
+  const Topology& mesh = step.mesh;
+  const Real damping_extra = static_cast<Real>(step.parameters.damping_extra);
+  if (!mesh.bends) return;
+  hinge_terms_.resize(mesh.hinge_count);
+  if (step.parameters.bending_model == BendingModel::hinge) {
+    for_each("implicit.bending", mesh.hinge_count,
+             BendingTerms{mesh.hinge.view(), mesh.fabric.view(), point, hinge_terms_.view(),
+                          damping_extra});
+    return;
+  }
+  plate_terms_.resize(mesh.cloth_faces);
+  for_each("implicit.angles", mesh.hinge_count,
+           HingeAngles{mesh.hinge.view(), mesh.fabric.view(), point, hinge_terms_.view(),
+                       damping_extra});
+  for_each("implicit.plates", mesh.cloth_faces,
+           PlateTerms{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
+                      mesh.face_fabric.view(), mesh.fabric.view(), point, hinge_terms_.view(),
+                      plate_terms_.view(), damping_extra});
+  for_each("implicit.bending", mesh.hinge_count,
+           GatherPlates{mesh.hinge_slots.view(), plate_terms_.view(), mesh.hinge.view(),
+                        mesh.fabric.view(), point, hinge_terms_.view(), damping_extra});
+}
+
 void Implicit::assemble(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
@@ -271,15 +295,12 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
       static_cast<Real>(p.air_drag)};
   const Real damping_extra = static_cast<Real>(p.damping_extra);
   face_terms_.resize(mesh.cloth_faces);
-  hinge_terms_.resize(mesh.hinge_count);
   rhs_.resize(mesh.cloth_vertices);
   for_each("implicit.membrane", mesh.cloth_faces,
            MembraneTerms{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
                          mesh.face_fabric.view(), mesh.fabric.view(), point, face_terms_.view(),
                          damping_extra, wind});
-  for_each("implicit.bending", mesh.hinge_count,
-           BendingTerms{mesh.hinge.view(), mesh.fabric.view(), point, hinge_terms_.view(),
-                        damping_extra});
+  bend(step, point);
   for_each(
       "implicit.assemble", mesh.cloth_vertices,
       AssembleRow{matrix_.row_first.view(), matrix_.column.view(), face_source_first_.view(),

@@ -7,8 +7,8 @@
 // coefficients frozen; d: stiffness-proportional damping [s].
 #pragma once
 
-#include "sim/elastic_terms.h"
 #include "sim/linear_solver.h"
+#include "sim/plate_terms.h"
 #include "sim/proximity.h"
 #include "sim/state.h"
 
@@ -17,7 +17,8 @@ namespace icloth::ICLOTH_BUILD {
 class Implicit {
  public:
   /// Lays out the matrix: one block for each pair of vertices that a face or a hinge couples.
-  void set_up(const World& world);
+  /// Without `bending` those of faces alone.
+  void set_up(const World& world, bool bending);
 
   /// Writes state.candidate and the cloth part of state.x1.
   void integrate(StepContext& step, const Proximity& proximity);
@@ -29,12 +30,14 @@ class Implicit {
   void assemble(StepContext& step, const Linearization& point);
   void solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved);
   double move(StepContext& step, const Linearization& point);
+  void bend(StepContext& step, const Linearization& point);
 
   BlockMatrix matrix_;
   /// Which element blocks add up to a stored block: 9·face + 3a + b, 16·hinge + 4a + b.
   Array<Index> face_source_first_, face_source_, hinge_source_first_, hinge_source_;
   Array<FaceTerm> face_terms_;    ///< (cloth_faces), assemble
-  Array<HingeTerm> hinge_terms_;  ///< (hinges), assemble
+  Array<HingeTerm> hinge_terms_;  ///< (hinges), bend
+  Array<PlateTerm> plate_terms_;  ///< (cloth_faces), bend
   Array<ContactTerm> contact_terms_;
   Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)

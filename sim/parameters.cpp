@@ -23,6 +23,7 @@ constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangia
 constexpr std::string_view kZoneSolvers[] = {"augmented_lagrangian", "dual", "linear"};
 constexpr std::string_view kPreconditioners[] = {"block_jacobi", "multilevel"};
 constexpr std::string_view kBroadPhaseMethods[] = {"tree", "hash"};
+constexpr std::string_view kBendingModels[] = {"hinge", "plate"};
 constexpr std::string_view kMaterialEvaluations[] = {"direct", "table"};
 
 constexpr ParameterInfo kTable[] = {
@@ -70,6 +71,9 @@ constexpr ParameterInfo kTable[] = {
     {"material.strain_limit", "strain limit", "", &P::strain_limit, 0, 10, false,
      "cloth hardens at less stretch, more iterations; 0: as its fabric says, mostly never",
      "cloth stretches further before it hardens", "own choice; 0.1: a tenth longer"},
+    {"material.bending", "bending", "", &P::bending_model, 0, 1, false,
+     "hinge: each edge for itself; how stiff depends on the layout of the mesh",
+     "plate: from the curvature of each face; as stiff on every mesh", "measured"},
     {"material.evaluation", "stiffness", "", &P::material_evaluation, 0, 1, false,
      "direct: the measured law at each strain",
      "table: sampled at 30 strains in three axes and interpolated, as ARCSim does",
@@ -266,6 +270,7 @@ const ParameterInfo* find_parameter(std::string_view name) {
 std::span<const std::string_view> parameter_choices(const ParameterInfo& info) {
   if (std::holds_alternative<ZoneSolver P::*>(info.member)) return kZoneSolvers;
   if (std::holds_alternative<BroadPhaseMethod P::*>(info.member)) return kBroadPhaseMethods;
+  if (std::holds_alternative<BendingModel P::*>(info.member)) return kBendingModels;
   if (std::holds_alternative<MaterialEvaluation P::*>(info.member)) return kMaterialEvaluations;
   if (std::holds_alternative<Preconditioner P::*>(info.member)) return kPreconditioners;
   return {};

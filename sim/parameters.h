@@ -14,6 +14,7 @@ enum class ZoneSolver { augmented_lagrangian, dual, linear };
 enum class Preconditioner { block_jacobi, multilevel };
 enum class BroadPhaseMethod { tree, hash };
 enum class MaterialEvaluation { direct, table };
+enum class BendingModel { hinge, plate };
 
 struct Parameters {
   // step
@@ -32,6 +33,7 @@ struct Parameters {
   double damping_extra = 0.0;
   double strain_limit = 0.0;
   MaterialEvaluation material_evaluation = MaterialEvaluation::direct;
+  BendingModel bending_model = BendingModel::hinge;
   // proximity
   bool proximity_enabled = true;
   double thickness = 1e-3;
@@ -74,7 +76,8 @@ struct Parameters {
 struct ParameterInfo {
   using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
                               ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*,
-                              MaterialEvaluation Parameters::*, Preconditioner Parameters::*>;
+                              MaterialEvaluation Parameters::*, Preconditioner Parameters::*,
+                              BendingModel Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol

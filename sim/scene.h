@@ -17,7 +17,7 @@ struct Cloth {
   std::vector<Vec3d> rest;  ///< rest positions [m] (V), the start state's where none were given
   Material material;
   bool flat_angles = false;  ///< rest angles are 0, whatever folds the rest shape has
-  std::vector<Index> pins;  ///< vertices held where they start
+  std::vector<Index> pins;   ///< vertices held where they start
 };
 
 /// Rigid pose at a time; between keyframes translation and rotation vector are interpolated.

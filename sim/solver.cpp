@@ -107,7 +107,6 @@ void Topology::upload(const World& world) {
 Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
     : device_(device), scene_(std::move(scene)), world_(std::move(world)), hands_(world_) {
   mesh_.upload(world_);
-  implicit_.set_up(world_);
   upload_as(state_.x1, world_.position, to_real);
   state_.x0.copy_from(state_.x1);
   state_.candidate.resize(mesh_.cloth_vertices);
@@ -131,6 +130,9 @@ void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
   upload_fabrics(mesh_, *scene_, parameters);
+  if (parameters.bending_model == BendingModel::plate && mesh_.bends) upload_plates(mesh_, world_);
+  if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
+  pattern_bends_ = mesh_.bends;
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
   for (std::size_t i = 0; i < world_.mass.size(); ++i) {
     mass.push_back(real(parameters.density_scale * world_.mass[i]));

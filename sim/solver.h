@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "sim/broad_phase.h"
 #include "sim/ccd.h"
@@ -74,6 +75,7 @@ class Solver final : public Simulator {
 
   BroadPhase broad_phase_;
   Proximity proximity_;
+  std::optional<bool> pattern_bends_;  ///< what implicit_ was set up for
   Implicit implicit_;
   Ccd ccd_;
   ImpactZones impact_zones_;

@@ -52,6 +52,41 @@ struct BendingEnergy {
   }
 };
 
+/// Of the faces; an edge of more than two faces is left out.
+struct PlateEnergy {
+  View<const PlateRest> plate;
+  View<const HingeRest> hinge;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const Vec3r> x;
+
+  ICLOTH_HD double operator()(Index i) const {
+    const PlateRest& p = plate[i];
+    Real angle[3] = {0, 0, 0};
+    for (int slot = 0; slot < 3; ++slot) {
+      if (p.hinge[slot] < 0) continue;
+      const HingeRest& h = hinge[p.hinge[slot]];
+      Vec3r xs[4];
+      for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
+      angle[slot] = hinge_angle(xs).theta - h.angle;
+    }
+    const Sym2 c = plate_curvature(p, angle);
+    return static_cast<double>(area[i] * plate_energy(plate_moduli(fabric[face_fabric[i]], c), c));
+  }
+};
+
+double bending_energy(const Topology& mesh, const State& state, const Parameters& parameters) {
+  if (!mesh.bends) return 0;
+  if (parameters.bending_model == BendingModel::plate)
+    return reduce("statistics.bending", mesh.cloth_faces, 0.0,
+                  PlateEnergy{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
+                              mesh.face_fabric.view(), mesh.fabric.view(), state.x1.view()},
+                  Sum{});
+  return reduce("statistics.bending", mesh.hinge_count, 0.0,
+                BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), state.x1.view()}, Sum{});
+}
+
 struct VertexEnergy {
   double kinetic, potential, speed2;
 };
@@ -122,9 +157,7 @@ void report_state(const Topology& mesh, const State& state, const Parameters& pa
              MembraneEnergy{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
                             mesh.face_fabric.view(), mesh.fabric.view(), state.x1.view()},
              CombineFaces{});
-  const double bending =
-      reduce("statistics.bending", mesh.hinge_count, 0.0,
-             BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), state.x1.view()}, Sum{});
+  const double bending = bending_energy(mesh, state, parameters);
   const Vec3d gravity{parameters.gravity_x, parameters.gravity_y, parameters.gravity_z};
   const VertexEnergy motion = reduce(
       "statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},

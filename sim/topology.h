@@ -1,7 +1,7 @@
 // The scene in the memory of the device: constant during a simulation.
 #pragma once
 
-#include "kernels/bending.h"
+#include "kernels/plate.h"
 #include "kernels/stencil.h"
 #include "sim/world.h"
 
@@ -26,6 +26,11 @@ struct Topology {
   Array<HingeRest> hinge;    ///< (hinge_count)
   Array<Fabric> fabric;      ///< one a cloth
   Array<Index> face_fabric;  ///< (cloth_faces)
+  bool bends = false;        ///< whether any fabric resists bending
+
+  /// With material.bending=plate alone.
+  Array<PlateRest> plate;         ///< (cloth_faces)
+  Array<HingeSlots> hinge_slots;  ///< (hinge_count)
   /// What Fabric::table points into; empty without material.evaluation=table.
   Array<Stiffness> stiffness_table;
 
