@@ -47,7 +47,7 @@ struct Parameters {
   int contact_passes = 6;
   double contact_tolerance = 1e-3;
   int newton_iterations = 3;
-  double newton_tolerance = 1;
+  double newton_tolerance = 5;
   double max_missed_tension = 1e3;
   // broad phase
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
