@@ -112,7 +112,7 @@ constexpr ParameterInfo kTable[] = {
     {"implicit.newton_iterations", "Newton iterations", "", &P::newton_iterations, 1, 20, false,
      "1: one linearisation as in the paper; stiff or fast turning cloth gains strain",
      "elastic forces are those of the end of the step; slower", "measured"},
-    {"implicit.newton_tolerance", "Newton tolerance", "N/m", &P::newton_tolerance, 0, 1e6, true,
+    {"implicit.newton_tolerance", "Newton tolerance", "N/m", &P::newton_tolerance, 1e-6, 1e6, true,
      "iterates until the linearisation misses less tension", "stops iterating sooner",
      "measured on the scarf: a fifth more time than one iteration"},
     {"implicit.max_missed_tension", "missed tension", "N/m", &P::max_missed_tension, 1, 1e9, true,
