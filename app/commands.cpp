@@ -159,6 +159,7 @@ void Commands::add_bench_and_replay() {
   verb->add_flag("--quiet", bench.quiet, "no progress line");
   verb->add_option("--case", bench.only,
                    "stability, validation, solver: only cases whose name holds this");
+  verb->add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");
   verb->add_option("--soak", bench.soak, "stability: simulated seconds of random dragging")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();

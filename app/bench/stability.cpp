@@ -69,6 +69,8 @@ int run_stability(const BenchOptions& options) {
   stability::Settings settings;
   settings.threads = options.threads;
   settings.soak_seconds = options.soak;
+  make_output_folder(options.frames);
+  settings.frames = options.frames;
   print_head();
   int failed = 0, passed = 0;
   for (const Case& test : stability::cases()) {

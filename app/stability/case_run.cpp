@@ -1,12 +1,14 @@
 #include "app/stability/case_run.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "sim/error.h"
 #include "sim/intersections.h"
+#include "sim/mesh_io.h"
 
 namespace icloth::stability {
 namespace {
@@ -15,6 +17,9 @@ bool all_finite(const std::vector<Vec3d>& list) {
   return std::ranges::all_of(
       list, [](Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
 }
+
+/// States from one exported one to the next.
+constexpr std::int64_t kExportEvery = 10;
 
 std::string counted(std::int64_t number, const char* what) {
   return std::to_string(number) + " " + what;
@@ -54,9 +59,36 @@ void CaseRun::check_state() {
   const Snapshot state = simulator_->snapshot();
   result_.finite = result_.finite && all_finite(state.positions) && all_finite(state.velocities);
   if (!result_.finite) return;
+  if (!settings_.frames.empty() && result_.states % kExportEvery == 0) write_state();
   ++result_.states;
   result_.penetrations +=
       static_cast<std::int64_t>(find_intersections(state.positions, faces_, group_).size());
+}
+
+/// Cloths and obstacles in one file each, so that other programs can tell them apart.
+void CaseRun::write_state() const {
+  std::vector<Vec3f> positions;
+  simulator_->positions(positions);
+  const Scene& scene = simulator_->scene();
+  std::vector<NamedMesh> cloths, obstacles;
+  std::size_t first = 0;
+  const auto append = [&](std::vector<NamedMesh>& list, const std::string& name,
+                          const TriangleMesh& mesh) {
+    const std::size_t count = mesh.positions.size();
+    list.push_back({name, std::span(positions).subspan(first, count), mesh.faces});
+    first += count;
+  };
+  for (const Cloth& cloth : scene.cloths) append(cloths, "cloth:" + cloth.name, cloth.mesh);
+  for (const Obstacle& obstacle : scene.obstacles)
+    append(obstacles, "obstacle:" + obstacle.name, obstacle.mesh);
+  std::string name = name_;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  char number[16];
+  std::snprintf(number, sizeof number, "_%05ld", static_cast<long>(result_.states));
+  const std::string path = settings_.frames + "/" + name + number;
+  write_obj(path + "_cloth.obj", cloths);
+  if (!obstacles.empty()) write_obj(path + "_obstacles.obj", obstacles);
 }
 
 void CaseRun::check_refusal(const Snapshot& before, const StepReport& report) {
@@ -130,7 +162,7 @@ CaseResult CaseRun::finish() {
 
 CaseResult run_case(const Case& test, const Settings& settings) {
   const auto begin = std::chrono::steady_clock::now();
-  CaseRun run(settings);
+  CaseRun run(settings, test.name);
   try {
     test.run(run);
   } catch (const std::exception& error) {

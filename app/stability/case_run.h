@@ -17,6 +17,7 @@ struct Settings {
   bool brief = false;        ///< shortest form, for tests that run at every change
   double soak_seconds = 60;  ///< simulated, of the random dragging [s]
   int threads = 0;           ///< of the CPU builds, put back by the case that changes it; 0: all
+  std::string frames;        ///< folder that exists, for some of the checked states; empty: none
 };
 
 struct CaseResult {
@@ -37,7 +38,9 @@ struct CaseResult {
 
 class CaseRun {
  public:
-  explicit CaseRun(const Settings& settings) : settings_(settings) {}
+  /// `name`: begins the names of the exported states.
+  explicit CaseRun(const Settings& settings, std::string name = "case")
+      : settings_(settings), name_(std::move(name)) {}
 
   const Settings& settings() const { return settings_; }
   bool brief() const { return settings_.brief; }
@@ -74,9 +77,11 @@ class CaseRun {
 
  private:
   void check_state();
+  void write_state() const;
   void check_refusal(const Snapshot& before, const StepReport& report);
 
   Settings settings_;
+  std::string name_;
   std::unique_ptr<Simulator> simulator_;
   std::vector<Triangle> faces_;
   std::vector<int> group_;

@@ -12,6 +12,7 @@ struct BenchOptions {
   int threads = 0;     ///< of the CPU builds; 0: all
   bool quiet = false;  ///< no progress line
   std::string only;    ///< stability, validation, solver: cases whose name holds this; empty: all
+  std::string frames;  ///< stability: folder for OBJ files of some of the states, empty: none
   double soak = 60;    ///< stability: simulated time of the random dragging [s]
 };
 
