@@ -33,7 +33,7 @@ struct Parameters {
   double damping_extra = 0.0;
   double strain_limit = 0.0;
   MaterialEvaluation material_evaluation = MaterialEvaluation::direct;
-  BendingModel bending_model = BendingModel::hinge;
+  BendingModel bending_model = BendingModel::plate;
   // proximity
   bool proximity_enabled = true;
   double thickness = 1e-3;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <random>
+#include <vector>
 
 #include "kernels/bending.h"
 
@@ -27,6 +28,15 @@ Fabric interlock(bool measured) {
            {14.3e-6, 7.1e-6, 14.5e-6, 24.7e-6, 19.4e-6}},
           0,
           measured};
+}
+
+/// The same stiffness at every strain.
+Fabric plain_fabric() {
+  Fabric fabric = interlock(false);
+  const Real row[4] = {40, 9, 70, 20};
+  for (auto& r : fabric.stretching)
+    for (int c = 0; c < 4; ++c) r[c] = row[c];
+  return fabric;
 }
 
 struct RandomFace {
@@ -163,6 +173,127 @@ TEST(Membrane, UniaxialStretchGivesTheMeasuredRows) {
   EXPECT_EQ(at(1, 1).k12, 0);  // negative measured entries act as zero
 }
 
+/// States in which formulas like to fail: squashed to a line or a point, an edge of no length,
+/// turned inside out, stretched a hundredfold.
+std::vector<RandomFace> degenerate_faces() {
+  std::mt19937 random(11);
+  std::vector<RandomFace> faces;
+  const auto add = [&](auto deform) {
+    RandomFace f = random_face(random, 0);
+    deform(f);
+    faces.push_back(f);
+  };
+  add([](RandomFace& f) { f.x[2] = f.x[1]; });
+  add([](RandomFace& f) { f.x[1] = f.x[2] = f.x[0]; });
+  add([](RandomFace& f) { f.x[2] = 0.5 * (f.x[0] + f.x[1]); });
+  add([](RandomFace& f) { f.x[2] = f.x[0] - (f.x[2] - f.x[0]); });
+  add([](RandomFace& f) {
+    for (Vec3r& p : f.x) p = 100.0 * p;
+  });
+  add([](RandomFace& f) { f.x[2] = f.x[0] + 1e-6 * (f.x[2] - f.x[0]) + 0.3 * (f.x[1] - f.x[0]); });
+  return faces;
+}
+
+TEST(Membrane, DegenerateAndInvertedFacesKeepForceHessianAndPositivity) {
+  for (const bool measured : {false, true}) {
+    const Fabric fabric = measured ? interlock(true) : plain_fabric();
+    for (const RandomFace& f : degenerate_faces()) {
+      const FaceFrame frame = face_frame(f.x, f.inverse);
+      const Stiffness k = stiffness_at(fabric, green_strain(frame));
+      const Sym2 s = stress(k, green_strain(frame));
+      double scale = 1e-9;
+      for (int a = 0; a < 3; ++a) scale += norm(membrane_force(frame, s, f.area, a));
+      for (int a = 0; a < 3; ++a) {
+        Vec3r force = membrane_force(frame, s, f.area, a);
+        for (int axis = 0; axis < 3; ++axis) {
+          const double h = 1e-7;
+          RandomFace plus = f, minus = f;
+          coordinate(plus.x[a], axis) += h, coordinate(minus.x[a], axis) -= h;
+          const double slope = (frozen_energy(plus, k) - frozen_energy(minus, k)) / (2 * h);
+          EXPECT_NEAR(coordinate(force, axis), -slope, 1e-4 * scale);
+        }
+      }
+      const auto h = hessian(f, k, true);
+      EXPECT_TRUE(h.allFinite());
+      const double smallest =
+          Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>>(h).eigenvalues()(0);
+      EXPECT_GE(smallest, -1e-12 * h.norm());
+    }
+  }
+}
+
+TEST(Membrane, ForcesTurnWithTheFace) {
+  std::mt19937 random(12);
+  const Eigen::Matrix3d r = (Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(-0.7, Eigen::Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(2.3, Eigen::Vector3d::UnitZ()))
+                                .toRotationMatrix();
+  const auto turned = [&](Vec3r p) {
+    const Eigen::Vector3d q = r * Eigen::Vector3d(p.x, p.y, p.z);
+    return Vec3r{q.x(), q.y(), q.z()};
+  };
+  for (int trial = 0; trial < 50; ++trial) {
+    const RandomFace f = random_face(random, 0.3);
+    RandomFace g = f;
+    for (Vec3r& p : g.x) p = turned(p) + Vec3r{1, -2, 3};
+    const auto force = [&](const RandomFace& face, int a) {
+      const FaceFrame frame = face_frame(face.x, face.inverse);
+      const Sym2 strain = green_strain(frame);
+      return membrane_force(frame, stress(stiffness_at(interlock(true), strain), strain), face.area,
+                            a);
+    };
+    Vec3r sum{}, torque{};
+    double scale = 0;
+    for (int a = 0; a < 3; ++a) {
+      const Vec3r one = force(f, a);
+      sum += one, torque += cross(f.x[a], one), scale += norm(one);
+      EXPECT_LT(norm(turned(one) - force(g, a)), 1e-10 * (1 + norm(one)));
+    }
+    EXPECT_LT(norm(sum), 1e-12 * scale);
+    EXPECT_LT(norm(torque), 1e-12 * scale);
+  }
+}
+
+/// A patch of irregular triangles under x = F U: every face has the strain and the stress of F, and
+/// all forces on the vertex in the middle cancel.
+TEST(Membrane, AffinePatchIsInBalanceWithTheStressOfTheFormula) {
+  const double f[3][2] = {{1.1, 0.2}, {-0.1, 0.9}, {0.3, -0.2}};
+  const Vec2d ring[6] = {{0.012, 0.001},   {0.004, 0.011},   {-0.008, 0.006},
+                         {-0.011, -0.002}, {-0.002, -0.009}, {0.009, -0.007}};
+  const Vec2d centre{0.001, -0.002};
+  const double guu = 0.5 * (f[0][0] * f[0][0] + f[1][0] * f[1][0] + f[2][0] * f[2][0] - 1);
+  const double gvv = 0.5 * (f[0][1] * f[0][1] + f[1][1] * f[1][1] + f[2][1] * f[2][1] - 1);
+  const double guv = 0.5 * (f[0][0] * f[0][1] + f[1][0] * f[1][1] + f[2][0] * f[2][1]);
+  for (const bool measured : {false, true}) {
+    const Fabric fabric = measured ? interlock(true) : plain_fabric();
+    const Stiffness k = stiffness_at(fabric, {guu, guv, gvv});
+    Vec3r middle{};
+    double scale = 0;
+    for (int i = 0; i < 6; ++i) {
+      const Vec2d u[3] = {centre, ring[i], ring[(i + 1) % 6]};
+      const Vec2d a = u[1] - u[0], b = u[2] - u[0];
+      const double det = a.x * b.y - a.y * b.x;
+      const double inverse[4] = {b.y / det, -b.x / det, -a.y / det, a.x / det};
+      Vec3r x[3];
+      for (int c = 0; c < 3; ++c)
+        x[c] = {f[0][0] * u[c].x + f[0][1] * u[c].y, f[1][0] * u[c].x + f[1][1] * u[c].y,
+                f[2][0] * u[c].x + f[2][1] * u[c].y};
+      const FaceFrame frame = face_frame(x, inverse);
+      const Sym2 g = green_strain(frame);
+      EXPECT_NEAR(g.uu, guu, 1e-12);
+      EXPECT_NEAR(g.uv, guv, 1e-12);
+      EXPECT_NEAR(g.vv, gvv, 1e-12);
+      const Sym2 s = stress(stiffness_at(fabric, g), g);
+      EXPECT_NEAR(s.uu, k.k11 * guu + k.k12 * gvv, 1e-9);
+      EXPECT_NEAR(s.vv, k.k22 * gvv + k.k12 * guu, 1e-9);
+      EXPECT_NEAR(s.uv, k.k33 * guv, 1e-9);
+      const Vec3r force = membrane_force(frame, s, 0.5 * det, 0);
+      middle += force, scale += norm(force);
+    }
+    EXPECT_LT(norm(middle), 1e-10 * scale);
+  }
+}
+
 TEST(Bending, AngleGradientMatchesFiniteDifferences) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -207,6 +338,39 @@ TEST(Bending, FlatAndDegenerateHingesStayFinite) {
     const HingeAngle angle = hinge_angle(x);
     EXPECT_TRUE(std::isfinite(angle.theta));
     for (const Vec3r& g : angle.gradient) EXPECT_TRUE(std::isfinite(norm(g)));
+  }
+}
+
+/// Energy of a hinge whose stiffness is the same at every curvature.
+double hinge_energy(const Vec3r x[4], const HingeRest& rest, const Fabric& fabric) {
+  const double theta = hinge_angle(x).theta;
+  const double k = hinge_stiffness(fabric, fabric, rest, theta);
+  return 0.5 * k * (theta - rest.angle) * (theta - rest.angle);
+}
+
+TEST(Bending, ForceIsMinusTheGradientOfTheEnergyAlsoFoldedFlatAndOnSlivers) {
+  const Fabric fabric = plain_fabric();
+  HingeRest rest{};
+  rest.length = 0.01, rest.area = 8e-5, rest.weight = 1, rest.direction = 0.3, rest.angle = 0.2;
+  const Vec3r states[][4] = {
+      {{0, 0, 0}, {0.01, 0, 0}, {0.004, 0.008, 0}, {0.005, -0.007, 0}},      // flat
+      {{0, 0, 0}, {0.01, 0, 0}, {0.004, 0.008, 0}, {0.005, 0.007, 1e-4}},    // nearly folded
+      {{0, 0, 0}, {0.01, 0, 0}, {0.004, 0.008, 0}, {0.005, 0.001, -0.006}},  // a right angle
+      {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0.0005, 0.001}, {0.003, -0.00005, 0.00005}},  // slivers
+      {{0, 0, 0}, {0.001, 0, 0}, {0.004, 0.008, 0}, {0.005, -0.007, 0.003}}};        // a short edge
+  for (const auto& x : states) {
+    const HingeAngle angle = hinge_angle(x);
+    const double k = hinge_stiffness(fabric, fabric, rest, angle.theta);
+    for (int a = 0; a < 4; ++a)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double h = 1e-9;
+        Vec3r plus[4] = {x[0], x[1], x[2], x[3]}, minus[4] = {x[0], x[1], x[2], x[3]};
+        coordinate(plus[a], axis) += h, coordinate(minus[a], axis) -= h;
+        const double slope =
+            (hinge_energy(plus, rest, fabric) - hinge_energy(minus, rest, fabric)) / (2 * h);
+        Vec3r force = -k * (angle.theta - rest.angle) * angle.gradient[a];
+        EXPECT_NEAR(coordinate(force, axis), -slope, 1e-4 * std::fabs(slope) + 1e-9);
+      }
   }
 }
 

@@ -114,13 +114,15 @@ void free_fall(CaseRun& run) {
 /// One free vertex that swings along, across and out of two triangles. Source: backward Euler
 /// applied to ẍ + ω² x = 0: each step multiplies the amplitude by 1/√(1 + ω²dt²) and turns the
 /// phase by atan(ω dt). With height h, area A and mass m = ρA/3, ω² is k22 A/(h² m) along, ½ k33
-/// A/(h² m) across and K/(h² m) out of the plane, K = ¼ k_e l²/(2A) the stiffness of the hinge.
+/// A/(h² m) across and K/(h² m) out of the plane. K = 2 · 1.2 D A/l² is the stiffness of two faces
+/// about their hinge: an angle θ is the curvature tensor of size √1.2 θ/l, the smallest that has
+/// it.
 void oscillator(CaseRun& run) {
   const double density = 0.2, tensile = 40, poisson = 0.25, modulus = 1e-5;
   const Tip tip = one_free_vertex(plain_fabric(tensile, poisson, density, modulus));
   const double h2m = tip.height * tip.height * density * tip.area / 3;
   const double k22 = tensile / (1 - poisson * poisson), k33 = tensile / (1 + poisson);
-  const double hinge = modulus * std::pow(0.1, 2) / (2 * tip.area);
+  const double hinge = 2.4 * modulus * tip.area / std::pow(0.1, 2);
   follow(run, tip, "stretch", {0, 1, 0}, std::sqrt(k22 * tip.area / h2m));
   follow(run, tip, "shear", {1, 0, 0}, std::sqrt(0.5 * k33 * tip.area / h2m));
   follow(run, tip, "bending", {0, 0, 1}, std::sqrt(hinge / h2m));
