@@ -62,9 +62,10 @@ void add_device_option(CLI::App& verb, std::string& device) {
 }
 
 void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required) {
-  auto* scene = verb.add_option("SCENE", options.scene,
-                                "built-in name (scarf sphere twisting funnel drape), scene JSON or mesh "
-                                "file");
+  auto* scene =
+      verb.add_option("SCENE", options.scene,
+                      "built-in name (scarf sphere twisting funnel drape), scene JSON or mesh "
+                      "file");
   if (scene_required) scene->required();
   add_device_option(verb, options.device);
   verb.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
