@@ -46,7 +46,7 @@ struct Parameters {
   int cg_max_iterations = 500;
   int contact_passes = 6;
   double contact_tolerance = 1e-3;
-  int newton_iterations = 3;
+  int newton_iterations = 5;
   double newton_tolerance = 5;
   double max_missed_tension = 1e3;
   // broad phase
