@@ -44,6 +44,11 @@ ICLOTH_HD inline HingeAngle hinge_angle(const Vec3r x[4]) {
   return out;
 }
 
+ICLOTH_HD inline HingeAngle hinge_angle_of(const HingeRest& h, View<const Vec3r> x) {
+  const Vec3r xs[4] = {x[h.v.v[0]], x[h.v.v[1]], x[h.v.v[2]], x[h.v.v[3]]};
+  return hinge_angle(xs);
+}
+
 /// Measured bending stiffness k_e [N·m]: linear between the curvature samples and the directions.
 ICLOTH_HD inline Real bending_stiffness(const Fabric& fabric, const HingeRest& hinge, Real theta) {
   // The change of curvature, without its sign: valley and mountain folds are equally stiff.

@@ -19,10 +19,10 @@ namespace icloth::ICLOTH_BUILD {
 struct Contact {
   std::uint64_t key;
   Stencil s;       ///< gap vector g(x0) = Σ w x0
-  Vec3r normal;    ///< unit, along g
+  Vec3r normal;    ///< unit, to the side of g, across both elements where these say so
   Vec3r held;      ///< tangential force at the end of the last substep [N]
   Index stuck;     ///< 1: it stuck then; 0: it slid, or was not in contact
-  Real gap;        ///< |g| [m]
+  Real gap;        ///< normal · g [m]
   Real area;       ///< of the features [m²]
   Real friction;   ///< Coulomb coefficient
   Real thickness;  ///< h of the pair [m]

@@ -114,11 +114,6 @@ struct MembraneTerms {
   }
 };
 
-ICLOTH_HD inline HingeAngle hinge_angle_of(const HingeRest& h, View<const Vec3r> x) {
-  const Vec3r xs[4] = {x[h.v.v[0]], x[h.v.v[1]], x[h.v.v[2]], x[h.v.v[3]]};
-  return hinge_angle(xs);
-}
-
 struct BendingTerms {
   View<const HingeRest> hinge;
   View<const Fabric> fabric;

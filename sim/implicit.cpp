@@ -1,8 +1,6 @@
 #include "sim/implicit.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <tuple>
 
 #include "kernels/parallel.h"

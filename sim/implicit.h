@@ -1,10 +1,11 @@
-// Stage 2: backward Euler with one linearisation (paper Section 2.4; Baraff and Witkin 1998).
+// Stage 2: backward Euler (paper Section 2.4; Baraff and Witkin 1998), linearised at x̂: x0 first,
+// then where the last solve ended, as often as it missed tension (Newton).
 //
-//   [M + dt(dt+d)K + contacts + springs + air] Δv = dt [f(x) + f_ext − (dt+d) K v]
+//   [M + dt(dt+d)K + contacts + springs + air] Δv = dt [f(x̂) + f_ext − K (x0 + dt v − x̂ + d v)]
 //   x1 = x0 + dt (v + Δv)
 //
-// K: positive semi-definite stiffness of membrane and bending at x0, with the measured fabric's
-// coefficients frozen; d: stiffness-proportional damping [s].
+// K: positive semi-definite stiffness of membrane and bending at x̂, with the measured fabric's
+// coefficients frozen at x0; d: stiffness-proportional damping [s].
 #pragma once
 
 #include "sim/linear_solver.h"

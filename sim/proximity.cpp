@@ -236,10 +236,12 @@ void Proximity::ramp_thickness(const StepContext& step) {
            RampThickness{start_gap_.view(), contacts_.view(), static_cast<Real>(share)});
 }
 
-void Proximity::keep_friction(const StepContext& step) {
-  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
+void Proximity::keep_friction(const State& state, const Parameters& parameters, Real dt) {
+  held_.resize(0);
+  if (!(parameters.friction_cloth > 0 || parameters.friction_obstacle > 0)) return;
+  const ContactLaw law{static_cast<Real>(parameters.repulsion_stiffness), dt};
   collect("proximity.keep_friction", contacts_.size(),
-          KeepFriction{contacts_.view(), step.state.x0.view(), step.state.x1.view(), law}, held_);
+          KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, held_);
 }
 
 void Proximity::recall_friction() {

@@ -22,7 +22,7 @@ class Proximity {
   /// No contacts in this step.
   void clear(StepContext& step);
   /// Keeps what the contacts hold after the accepted motion x0 → x1, for the next find.
-  void keep_friction(const StepContext& step);
+  void keep_friction(const State& state, const Parameters& parameters, Real dt);
 
   /// Sorted by pair; what the friction of the next step starts from.
   const Array<HeldForce>& held() const { return held_; }

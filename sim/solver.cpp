@@ -161,9 +161,8 @@ void Solver::begin_substep(double start, double dt) {
   }
 }
 
-void Solver::accept_substep(double start, double dt, StepReport& report) {
-  proximity_.keep_friction(
-      StepContext{mesh_, parameters_, state_, report, static_cast<Real>(dt), start});
+void Solver::accept_substep(double dt) {
+  proximity_.keep_friction(state_, parameters_, real(dt));
   for_each("step.velocities", mesh_.cloth_vertices,
            EndVelocity{state_.x0.view(), state_.x1.view(), state_.inverse_mass.view(),
                        state_.v.view(), real(1 / dt)});

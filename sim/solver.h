@@ -44,7 +44,7 @@ class Solver final : public Simulator {
   bool resolve_by_rollback(StepContext& step);
   void find_impacts(StepContext& step, bool first_round);
   void begin_substep(double start, double dt);
-  void accept_substep(double start, double dt, StepReport& report);
+  void accept_substep(double dt);
   void report_offending(StepReport& report) const;
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.

@@ -44,9 +44,7 @@ struct BendingEnergy {
 
   ICLOTH_HD double operator()(Index i) const {
     const HingeRest& h = hinge[i];
-    Vec3r xs[4];
-    for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
-    const Real theta = hinge_angle(xs).theta;
+    const Real theta = hinge_angle_of(h, x).theta;
     const Real k = hinge_stiffness(fabric[h.fabric0], fabric[h.fabric1], h, theta);
     return 0.5 * static_cast<double>(k * (theta - h.angle) * (theta - h.angle));
   }
@@ -67,9 +65,7 @@ struct PlateEnergy {
     for (int slot = 0; slot < 3; ++slot) {
       if (p.hinge[slot] < 0) continue;
       const HingeRest& h = hinge[p.hinge[slot]];
-      Vec3r xs[4];
-      for (int a = 0; a < 4; ++a) xs[a] = x[h.v.v[a]];
-      angle[slot] = hinge_angle(xs).theta - h.angle;
+      angle[slot] = hinge_angle_of(h, x).theta - h.angle;
     }
     const Sym2 c = plate_curvature(p, angle);
     return static_cast<double>(area[i] * plate_energy(plate_moduli(fabric[face_fabric[i]], c), c));

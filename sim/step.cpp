@@ -121,7 +121,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
       const double start =
           time_ + report.dt * static_cast<double>(done) / static_cast<double>(whole);
       if (try_substep(report, start, dt, level == levels)) {
-        accept_substep(start, dt, report);
+        accept_substep(dt);
         ++report.substeps;
         done += whole >> level;
         if (level > travel_level() && done % (whole >> (level - 1)) == 0) --level;

@@ -2,49 +2,34 @@
 #define ICLOTH_BUILD cpu32
 #define ICLOTH_REAL float
 
-#include "sim/linear_solver.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <map>
 #include <random>
 
-#include "sim/constraints.h"
+#include "tests/linear_system_support.h"
 
 namespace icloth::cpu32 {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Random symmetric positive definite system: masses, springs between random pairs of vertices,
 /// contacts that also touch vertices beyond the matrix (obstacles), and some prescribed vertices.
-struct RandomSystem {
+struct RandomSystem : TestSystem {
   static constexpr Index kFree = 60, kAll = 70;
 
   std::mt19937 random;
-  std::vector<Real> inverse_mass = std::vector<Real>(at(kAll), Real(1));
-  std::map<std::pair<Index, Index>, Mat3r> blocks;  ///< upper half
-  std::vector<Contact> contact_list;
-  std::vector<ContactTerm> term_list;
   std::vector<Vec3r> rhs;
 
-  BlockMatrix matrix;
-  Array<Real> masses;
-  Array<Contact> contacts;
-  Array<ContactTerm> terms;
-  Incidence incidence;
-  Array<Mat3r> inverse_diagonal;
-  Array<Vec3r> b, x;
-
   RandomSystem(unsigned seed, int contact_count) : random(seed) {
+    inverse_mass.assign(at(kAll), Real(1));
     for (Index i = 0; i < kAll; ++i)
       if (i >= kFree || i % 11 == 3) inverse_mass[at(i)] = 0;
     for (Index i = 0; i < kFree; ++i) blocks[{i, i}] = Mat3r::identity(1 + uniform(0, 1));
     for (int spring = 0; spring < 200; ++spring) add_spring();
     for (int c = 0; c < contact_count; ++c) add_contact();
     for (Index i = 0; i < kFree; ++i) rhs.push_back(inverse_mass[at(i)] > 0 ? vector() : Vec3r{});
-    upload();
+    upload_matrix(kFree);
+    upload_rest(kFree, rhs);
   }
 
   Real uniform(Real low, Real high) {
@@ -81,54 +66,9 @@ struct RandomSystem {
     term_list.push_back(t);
   }
 
-  void upload() {
-    std::vector<Index> first{0}, column;
-    std::vector<Mat3r> value, inverse;
-    for (Index i = 0; i < kFree; ++i) {
-      for (const auto& [place, block] : blocks) {
-        if (place.first != i) continue;
-        column.push_back(place.second);
-        value.push_back(block);
-      }
-      first.push_back(static_cast<Index>(column.size()));
-      inverse.push_back(inverse_mass[at(i)] > 0 ? inverse_spd(blocks[{i, i}]) : Mat3r{});
-    }
-    matrix.set_pattern(first, column);
-    matrix.value.fill(Mat3r{});
-    matrix.value.upload_range(0, value);
-    inverse_diagonal.upload(inverse);
-    masses.upload(inverse_mass);
-    contacts.upload(contact_list);
-    terms.upload(term_list);
-    std::vector<Int4> corners;
-    for (const Contact& c : contact_list)
-      corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
-    Array<Int4> slots;
-    slots.upload(corners);
-    incidence.build(slots.view(), kFree);
-    b.upload(rhs);
-    x.resize(kFree + kPadding);
-    x.fill(Vec3r{});
-  }
-
   LinearSolution solve(double tolerance, int iterations,
                        Preconditioner preconditioner = Preconditioner::multilevel) {
-    SystemView view;
-    view.row_first = matrix.row_first.view();
-    view.column = matrix.column.view();
-    view.lower_first = matrix.lower_first.view();
-    view.lower_column = matrix.lower_column.view();
-    view.lower_block = matrix.lower_block.view();
-    view.entries = matrix.value.view().data()->m;
-    view.inverse_mass = masses.view();
-    view.contacts = contacts.view();
-    view.terms = terms.view();
-    view.contact_first = incidence.first();
-    view.contact_entries = incidence.entries();
-    LinearSolver solver;
-    solver.set_up(matrix.row_first.download(), matrix.column.download());
-    return solver.solve(view, inverse_diagonal.view(), b.view(), x.view(),
-                        {preconditioner, tolerance, iterations});
+    return solve_from_x({preconditioner, tolerance, iterations});
   }
 
   /// The same system written out, with rows and columns of prescribed vertices replaced by those

@@ -4,41 +4,25 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <random>
 #include <set>
 
 #include "sim/aggregation.h"
-#include "sim/constraints.h"
-#include "sim/linear_solver.h"
 #include "sim/simulator.h"
+#include "tests/linear_system_support.h"
 
 namespace icloth::cpu32 {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Stands in for cloth: `sheets` separate grids of side × side vertices of mass 1, springs of a
 /// given stiffness along edges and diagonals, pinned corners, contacts between the sheets.
-struct Sheets {
+struct Sheets : TestSystem {
   Index side, count;
-  std::vector<Real> inverse_mass;
-  std::map<std::pair<Index, Index>, Mat3r> blocks;  ///< upper half
-  std::vector<Contact> contact_list;
-  std::vector<ContactTerm> term_list;
-  std::vector<Index> row_first{0}, column;
   std::mt19937 random{7};
 
-  BlockMatrix matrix;
-  Array<Real> masses;
-  Array<Contact> contacts;
-  Array<ContactTerm> terms;
-  Incidence incidence;
-  Array<Mat3r> inverse_diagonal;
-  Array<Vec3r> b, x;
-
   explicit Sheets(Index side_, Index sheets, Real stiffness, Real contact_stiffness = 0)
-      : side(side_), count(sheets * side_ * side_), inverse_mass(at(count), Real(1)) {
+      : side(side_), count(sheets * side_ * side_) {
+    inverse_mass.assign(at(count), Real(1));
     for (Index i = 0; i < count; ++i) blocks[{i, i}] = Mat3r::identity(1);
     for (Index s = 0; s < sheets; ++s) add_sheet(s * side * side, stiffness);
     if (contact_stiffness > 0)
@@ -87,14 +71,7 @@ struct Sheets {
   }
 
   void upload() {
-    std::vector<Mat3r> value, inverse;
-    Index row = 0;
-    for (const auto& [place, block] : blocks) {
-      while (row < place.first) row_first.push_back(static_cast<Index>(column.size())), ++row;
-      column.push_back(place.second);
-      value.push_back(block);
-    }
-    while (row++ < count) row_first.push_back(static_cast<Index>(column.size()));
+    upload_matrix(count);
     inverse_mass.resize(at(count) + 5, 0);
     for (std::size_t c = 0; c < contact_list.size(); ++c)
       for (int a = 0; a < 4; ++a) {
@@ -104,40 +81,14 @@ struct Sheets {
           blocks[{s.v[a], s.v[a]}] += w2 * Mat3r{{h[0], 0, 0, 0, h[3], 0, 0, 0, h[5]}};
       }
     std::vector<Vec3r> rhs;
-    for (Index i = 0; i < count; ++i) {
-      const bool free = inverse_mass[at(i)] > 0;
-      inverse.push_back(free ? inverse_spd(blocks[{i, i}]) : Mat3r{});
-      rhs.push_back(free ? Vec3r{0, -1, 0} + Real(0.2) * vector() : Vec3r{});
-    }
-    matrix.set_pattern(row_first, column);
-    matrix.value.fill(Mat3r{});
-    matrix.value.upload_range(0, value);
-    inverse_diagonal.upload(inverse);
-    masses.upload(inverse_mass);
-    contacts.upload(contact_list);
-    terms.upload(term_list);
-    std::vector<Int4> corners;
-    for (const Contact& c : contact_list)
-      corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
-    Array<Int4> slots;
-    slots.upload(corners);
-    incidence.build(slots.view(), count);
-    b.upload(rhs);
-  }
-
-  SystemView system() {
-    SystemView view{matrix.view(), masses.view(),     contacts.view(),
-                    terms.view(),  incidence.first(), incidence.entries()};
-    return view;
+    for (Index i = 0; i < count; ++i)
+      rhs.push_back(inverse_mass[at(i)] > 0 ? Vec3r{0, -1, 0} + Real(0.2) * vector() : Vec3r{});
+    upload_rest(count, rhs);
   }
 
   LinearSolution solve(Preconditioner preconditioner, double tolerance = 1e-3) {
-    x.resize(count + kPadding);
     x.fill(Vec3r{});
-    LinearSolver solver;
-    solver.set_up(row_first, column);
-    return solver.solve(system(), inverse_diagonal.view(), b.view(), x.view(),
-                        {preconditioner, tolerance, 2000});
+    return solve_from_x({preconditioner, tolerance, 2000});
   }
 };
 

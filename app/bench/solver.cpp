@@ -90,12 +90,11 @@ int run_solver(const BenchOptions& options) {
               {"scene", "step", "contacts", "preconditioner", "solves", "iterations a solve",
                "residual", "ms solve", "ms set-up", "times faster"});
   for (const SolverCase& test : kCases) {
-    if (std::string_view(test.name).find(options.only) == std::string_view::npos) continue;
+    if (!chosen(options, test.name)) continue;
     Frames frames(build, test.scene, test.overrides, test.first, test.last, test.every);
     compare(frames, test, table);
   }
-  if (table.rows().empty())
-    throw InputError("--case " + options.only + ": no such case, expected part of a case's name");
+  if (table.rows().empty()) throw no_such_case(options);
   report.heading("Preconditioners of the implicit step");
   report.text(
       "From the same states one step is taken with each preconditioner, to a relative residual of "

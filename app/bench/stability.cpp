@@ -60,21 +60,17 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
 }  // namespace
 
 int run_stability(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
   const std::vector<Build> builds = chosen_builds(options.device);
-  Json results;
-  results["suite"] = options.suite;
-  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  Json results = begin_suite(options, builds);
   stability::Settings settings;
   settings.threads = options.threads;
   settings.soak_seconds = options.soak;
-  make_output_folder(options.frames);
+  make_output_folder(options.frames, "--frames");
   settings.frames = options.frames;
   print_head();
   int failed = 0, passed = 0;
   for (const Case& test : stability::cases()) {
-    if (std::string_view(test.name).find(options.only) == std::string_view::npos) continue;
+    if (!chosen(options, test.name)) continue;
     for (const Build build : builds) {
       settings.build = build;
       const CaseResult result = run_case(test, settings);
@@ -83,8 +79,7 @@ int run_stability(const BenchOptions& options) {
       results["results"].push_back(describe(test, build, result));
     }
   }
-  if (passed + failed == 0)
-    throw InputError("--case " + options.only + ": no such case, expected part of a case's name");
+  if (passed + failed == 0) throw no_such_case(options);
   std::printf("%d passed, %d failed\n", passed, failed);
   if (!options.out.empty()) write_file(options.out + "/results.json", results.dump(1) + "\n");
   return failed == 0 ? 0 : 1;

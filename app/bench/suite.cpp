@@ -53,10 +53,27 @@ Json describe_machine(int threads, bool cuda) {
   return json;
 }
 
-void make_output_folder(const std::string& folder) {
+void make_output_folder(const std::string& folder, const char* option) {
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) throw InputError("--out " + folder + ": " + error.message());
+  if (error) throw InputError(std::string(option) + " " + folder + ": " + error.message());
+}
+
+Json begin_suite(const BenchOptions& options, const std::vector<Build>& builds) {
+  make_output_folder(options.out);
+  set_thread_count(options.threads);
+  Json results;
+  results["suite"] = options.suite;
+  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  return results;
+}
+
+bool chosen(const BenchOptions& options, std::string_view name) {
+  return name.find(options.only) != std::string_view::npos;
+}
+
+InputError no_such_case(const BenchOptions& options) {
+  return InputError("--case " + options.only + ": no such case, expected part of a case's name");
 }
 
 }  // namespace icloth

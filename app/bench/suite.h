@@ -3,8 +3,11 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/verbs/bench.h"
+#include "sim/error.h"
 #include "sim/simulator.h"
 
 namespace icloth {
@@ -16,7 +19,15 @@ std::vector<Build> chosen_builds(const std::string& device);
 /// used.
 nlohmann::ordered_json describe_machine(int threads, bool cuda);
 
-/// Throws InputError when it cannot be made; does nothing for "".
-void make_output_folder(const std::string& folder);
+/// Throws InputError when it cannot be made; does nothing for "". `option`: gave the folder.
+void make_output_folder(const std::string& folder, const char* option = "--out");
+
+/// Makes the folder, sets the threads; the head of results.json: suite and machine.
+nlohmann::ordered_json begin_suite(const BenchOptions& options, const std::vector<Build>& builds);
+
+/// Whether --case leaves this case in.
+bool chosen(const BenchOptions& options, std::string_view name);
+/// What to throw when it leaves none.
+InputError no_such_case(const BenchOptions& options);
 
 }  // namespace icloth

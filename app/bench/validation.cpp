@@ -60,19 +60,15 @@ std::string csv_rows(const Case& test, Build build, const CaseResult& r) {
 }  // namespace
 
 int run_validation(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
   const std::vector<Build> builds = chosen_builds(options.device);
-  Json results;
-  results["suite"] = options.suite;
-  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  Json results = begin_suite(options, builds);
   std::string csv = "case,build,what,reference,measured,error,target,verdict\n";
   std::printf("%-19s %-6s %-50s %12s %12s %9s %8s  %s\n", "case", "build", "what", "reference",
               "measured", "error", "target", "verdict");
   int cases = 0, failed = 0;
   double seconds = 0;
   for (const Case& test : validation::cases()) {
-    if (std::string_view(test.name).find(options.only) == std::string_view::npos) continue;
+    if (!chosen(options, test.name)) continue;
     for (const Build build : builds) {
       validation::Settings settings;
       settings.build = build;
@@ -86,8 +82,7 @@ int run_validation(const BenchOptions& options) {
       csv += csv_rows(test, settings.build, result);
     }
   }
-  if (cases == 0)
-    throw InputError("--case " + options.only + ": no such case, expected part of a case's name");
+  if (cases == 0) throw no_such_case(options);
   std::printf("%d of %d cases within their targets, %.1f s\n", cases - failed, cases, seconds);
   if (!options.out.empty()) {
     write_file(options.out + "/results.json", results.dump(1) + "\n");

@@ -69,26 +69,16 @@ void CaseRun::check_state() {
 void CaseRun::write_state() const {
   std::vector<Vec3f> positions;
   simulator_->positions(positions);
-  const Scene& scene = simulator_->scene();
-  std::vector<NamedMesh> cloths, obstacles;
-  std::size_t first = 0;
-  const auto append = [&](std::vector<NamedMesh>& list, const std::string& name,
-                          const TriangleMesh& mesh) {
-    const std::size_t count = mesh.positions.size();
-    list.push_back({name, std::span(positions).subspan(first, count), mesh.faces});
-    first += count;
-  };
-  for (const Cloth& cloth : scene.cloths) append(cloths, "cloth:" + cloth.name, cloth.mesh);
-  for (const Obstacle& obstacle : scene.obstacles)
-    append(obstacles, "obstacle:" + obstacle.name, obstacle.mesh);
+  const std::vector<NamedMesh> meshes = named_meshes(simulator_->scene(), positions);
+  const std::size_t cloths = simulator_->scene().cloths.size();
   std::string name = name_;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   char number[16];
   std::snprintf(number, sizeof number, "_%05ld", static_cast<long>(result_.states));
   const std::string path = settings_.frames + "/" + name + number;
-  write_obj(path + "_cloth.obj", cloths);
-  if (!obstacles.empty()) write_obj(path + "_obstacles.obj", obstacles);
+  write_obj(path + "_cloth.obj", std::span(meshes).first(cloths));
+  if (meshes.size() > cloths) write_obj(path + "_obstacles.obj", std::span(meshes).subspan(cloths));
 }
 
 void CaseRun::check_refusal(const Snapshot& before, const StepReport& report) {

@@ -81,6 +81,12 @@ void CaseRun::require(bool holds, const std::string& what) {
     result_.failures.push_back(what);
 }
 
+std::string number(double value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
 bool runs_on(const Case& test, Build& build) {
   if (!test.precise) return true;
   if (build == Build::cuda32) return false;

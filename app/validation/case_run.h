@@ -88,6 +88,9 @@ struct Case {
   void (*run)(CaseRun&);
 };
 
+/// A number of a case's name, as short as it goes.
+std::string number(double value);
+
 /// All cases, in the order of the table.
 std::span<const Case> cases();
 

@@ -113,12 +113,6 @@ double coulomb_way(double tangent, double friction, double time, double dt) {
   return 0.5 * a * time * (time + dt);
 }
 
-std::string number(double value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 void threshold(CaseRun& run, Ground ground) {
   const std::vector<double> frictions = run.brief() ? std::vector{0.3} : std::vector{0.1, 0.3, 0.6};
   for (const double friction : frictions) {

@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kGravity = 9.81, kPi = std::numbers::pi;
 
-std::string number(double value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 constexpr double kFirstShortening = 0.01, kLastShortening = 0.32, kLastTime = 3.3;
 
 /// A weightless strip clamped upright at its upper end, already buckled a little, above a ground

@@ -76,13 +76,8 @@ void print_row(const Json& row) {
 }
 
 int run_quick(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
   const std::vector<Build> builds = chosen_builds(options.device);
-
-  Json results;
-  results["suite"] = options.suite;
-  results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
+  Json results = begin_suite(options, builds);
   std::printf("%s, %d threads, %.1f GB/s, %s, commit %s\n", processor_name().c_str(),
               results["machine"]["threads"].get<int>(),
               results["machine"]["memory_bandwidth"].get<double>() / 1e9, compiler_name().c_str(),

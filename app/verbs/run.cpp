@@ -25,19 +25,9 @@ class FrameExport {
     if (folder_.empty() || steps_++ % every_ != 0) return;
     if (frame_ == 0) make_folder();
     simulator.positions(positions_);
-    std::vector<NamedMesh> meshes;
-    std::size_t first = 0;
-    const auto append = [&](const std::string& name, const TriangleMesh& mesh) {
-      const std::size_t count = mesh.positions.size();
-      meshes.push_back({name, std::span(positions_).subspan(first, count), mesh.faces});
-      first += count;
-    };
-    for (const Cloth& cloth : scene_->cloths) append("cloth:" + cloth.name, cloth.mesh);
-    for (const Obstacle& obstacle : scene_->obstacles)
-      append("obstacle:" + obstacle.name, obstacle.mesh);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05ld.obj", frame_++);
-    write_obj((folder_ / name).string(), meshes);
+    write_obj((folder_ / name).string(), named_meshes(*scene_, positions_));
   }
 
  private:

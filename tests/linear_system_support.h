@@ -1,0 +1,79 @@
+// A made-up system of the implicit step, put together on the host, for the tests of its solver.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "sim/constraints.h"
+#include "sim/linear_solver.h"
+
+namespace icloth::cpu32 {
+
+inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct TestSystem {
+  std::vector<Real> inverse_mass;
+  std::map<std::pair<Index, Index>, Mat3r> blocks;  ///< upper half
+  std::vector<Contact> contact_list;
+  std::vector<ContactTerm> term_list;
+  std::vector<Index> row_first{0}, column;
+
+  BlockMatrix matrix;
+  Array<Real> masses;
+  Array<Contact> contacts;
+  Array<ContactTerm> terms;
+  Incidence incidence;
+  Array<Mat3r> inverse_diagonal;
+  Array<Vec3r> b, x;
+
+  /// `blocks` as a matrix of so many rows.
+  void upload_matrix(Index rows) {
+    std::vector<Mat3r> value;
+    auto block = blocks.begin();
+    for (Index i = 0; i < rows; ++i) {
+      for (; block != blocks.end() && block->first.first == i; ++block) {
+        column.push_back(block->first.second);
+        value.push_back(block->second);
+      }
+      row_first.push_back(static_cast<Index>(column.size()));
+    }
+    matrix.set_pattern(row_first, column);
+    matrix.value.fill(Mat3r{});
+    matrix.value.upload_range(0, value);
+  }
+
+  /// The other parts; the preconditioner's blocks are inverted from `blocks` as they are now.
+  void upload_rest(Index rows, const std::vector<Vec3r>& rhs) {
+    std::vector<Mat3r> inverse;
+    for (Index i = 0; i < rows; ++i)
+      inverse.push_back(inverse_mass[at(i)] > 0 ? inverse_spd(blocks[{i, i}]) : Mat3r{});
+    inverse_diagonal.upload(inverse);
+    masses.upload(inverse_mass);
+    contacts.upload(contact_list);
+    terms.upload(term_list);
+    std::vector<Int4> corners;
+    for (const Contact& c : contact_list)
+      corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
+    Array<Int4> slots;
+    slots.upload(corners);
+    incidence.build(slots.view(), rows);
+    b.upload(rhs);
+    x.resize(rows + kPadding);
+    x.fill(Vec3r{});
+  }
+
+  SystemView system() {
+    return {matrix.view(), masses.view(),     contacts.view(),
+            terms.view(),  incidence.first(), incidence.entries()};
+  }
+
+  /// Starts from what x holds.
+  LinearSolution solve_from_x(const SolveOptions& options) {
+    LinearSolver solver;
+    solver.set_up(row_first, column);
+    return solver.solve(system(), inverse_diagonal.view(), b.view(), x.view(), options);
+  }
+};
+
+}  // namespace icloth::cpu32
