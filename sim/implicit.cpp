@@ -14,7 +14,7 @@ struct AssembleRow {
   View<const FaceTerm> face_term;
   View<const HingeTerm> hinge_term;
   View<const Real> mass, inverse_mass, spring_stiffness;
-  View<const Vec3r> spring_target, x, v;
+  View<const Vec3r> spring_target, x, v, free;
   bool springs;
   Vec3r gravity;
   Real dt;
@@ -52,7 +52,7 @@ struct AssembleRow {
     if (!(k > 0)) return;
     const Real c = 2 * std::sqrt(k * mass[i]);
     sum += Mat3r::identity(dt * dt * k + dt * c);
-    impulse += (dt * k) * (spring_target[i] - x[i]) - (dt * dt * k + dt * c) * v[i];
+    impulse += (dt * k) * (spring_target[i] - (x[i] + free[i])) - (dt * c) * v[i];
   }
 };
 
@@ -125,6 +125,56 @@ struct FreeMotion {
   Real dt;
   ICLOTH_HD void operator()(Index i) const {
     motion[i] = i < cloth_vertices ? dt * v[i] : x1[i] - x0[i];
+  }
+};
+
+/// The same of the cloth, with what a two-step rule adds.
+struct FreeMotionFromPast {
+  View<const Vec3r> past_motion, past_change, v;
+  View<Vec3r> motion, velocity;
+  TimeRule rule;
+  ICLOTH_HD void operator()(Index i) const {
+    velocity[i] = v[i] + rule.w * past_change[i];
+    motion[i] = rule.w * past_motion[i] + rule.h * velocity[i];
+  }
+};
+
+struct EndVelocity {
+  View<const Vec3r> x0, x1;
+  View<const Real> inverse_mass;
+  View<Vec3r> v;
+  Real inverse_dt;
+  ICLOTH_HD void operator()(Index i) const {
+    v[i] = inverse_mass[i] > 0 ? inverse_dt * (x1[i] - x0[i]) : Vec3r{};
+  }
+};
+
+/// For the next step of a two-step rule. A vertex that touched something was stopped or deflected:
+/// it starts afresh from its mean velocity, or the past would make it rebound.
+struct EndTwoSteps {
+  View<const Vec3r> x0, x1, candidate;
+  View<const Real> inverse_mass;
+  View<const Index> contact_first, contact_entries;
+  View<const ContactTerm> term;
+  TimeRule rule;
+  View<Vec3r> v, past_motion, past_change;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Vec3r way = x1[i] - x0[i], last = rule.remembers() ? rule.w * past_motion[i] : Vec3r{};
+    const bool touched = touches(i);
+    const Vec3r end = touched ? (Real(1) / rule.dt) * way : (Real(1) / rule.h) * (way - last);
+    const bool held = !(inverse_mass[i] > 0);
+    past_change[i] = touched || held ? Vec3r{} : end - v[i];
+    past_motion[i] = held ? Vec3r{} : way;
+    v[i] = held ? Vec3r{} : end;
+  }
+
+  ICLOTH_HD bool touches(Index i) const {
+    const Vec3r correction = x1[i] - candidate[i];
+    if (!(norm2(correction) == 0)) return true;
+    for (Index k = contact_first[i]; k < contact_first[i + 1]; ++k)
+      if (term[contact_entries[k] / 4].active != 0) return true;
+    return false;
   }
 };
 
@@ -299,13 +349,27 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
                          mesh.face_fabric.view(), mesh.fabric.view(), point, face_terms_.view(),
                          damping_extra, wind});
   bend(step, point);
-  for_each(
-      "implicit.assemble", mesh.cloth_vertices,
-      AssembleRow{matrix_.row_first.view(), matrix_.column.view(), face_source_first_.view(),
-                  face_source_.view(), hinge_source_first_.view(), hinge_source_.view(),
-                  face_terms_.view(), hinge_terms_.view(), s.mass.view(), s.inverse_mass.view(),
-                  s.spring_stiffness.view(), s.spring_target.view(), s.x0.view(), s.v.view(),
-                  s.has_springs, step.gravity(), step.dt, matrix_.value.view(), rhs_.view()});
+  for_each("implicit.assemble", mesh.cloth_vertices,
+           AssembleRow{matrix_.row_first.view(),
+                       matrix_.column.view(),
+                       face_source_first_.view(),
+                       face_source_.view(),
+                       hinge_source_first_.view(),
+                       hinge_source_.view(),
+                       face_terms_.view(),
+                       hinge_terms_.view(),
+                       s.mass.view(),
+                       s.inverse_mass.view(),
+                       s.spring_stiffness.view(),
+                       s.spring_target.view(),
+                       s.x0.view(),
+                       point.v,
+                       free_motion_.view(),
+                       s.has_springs,
+                       step.gravity(),
+                       rule_.h,
+                       matrix_.value.view(),
+                       rhs_.view()});
 }
 
 void Implicit::integrate(StepContext& step, const Proximity& proximity) {
@@ -314,11 +378,9 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   State& s = step.state;
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
-  free_motion_.resize(mesh.vertices);
-  for_each("implicit.free_motion", mesh.vertices,
-           FreeMotion{s.x0.view(), s.x1.view(), s.v.view(), free_motion_.view(),
-                      mesh.cloth_vertices, step.dt});
-  Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), s.v.view(), step.dt};
+  rule_ = time_rule(p.integrator, static_cast<double>(step.dt), s.past.dt);
+  const View<const Vec3r> velocity = move_freely(step);
+  Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), velocity, rule_.h};
   for (int iteration = 0;; ++iteration) {
     assemble(step, point);
     solve_with_contacts(step, proximity, iteration > 0);
@@ -326,10 +388,25 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     if (iteration + 1 >= p.newton_iterations || !(missed_tension_ > p.newton_tolerance)) break;
     at_.copy_from(s.candidate);
     ahead_.resize(mesh.cloth_vertices);
-    for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), step.dt});
+    for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), rule_.h});
     point.at = at_.view();
     point.ahead = ahead_.view();
   }
+}
+
+View<const Vec3r> Implicit::move_freely(const StepContext& step) {
+  const Topology& mesh = step.mesh;
+  const State& s = step.state;
+  free_motion_.resize(mesh.vertices);
+  for_each("implicit.free_motion", mesh.vertices,
+           FreeMotion{s.x0.view(), s.x1.view(), s.v.view(), free_motion_.view(),
+                      mesh.cloth_vertices, rule_.h});
+  if (!rule_.remembers()) return s.v.view();
+  free_velocity_.resize(mesh.cloth_vertices);
+  for_each("implicit.past", mesh.cloth_vertices,
+           FreeMotionFromPast{s.past.motion.view(), s.past.change.view(), s.v.view(),
+                              free_motion_.view(), free_velocity_.view(), rule_});
+  return free_velocity_.view();
 }
 
 /// Solves for Δv. The repulsion acts one way only, and friction sticks or slides: which contacts
@@ -344,8 +421,8 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
   contact_rhs_.resize(mesh.cloth_vertices);
   const SystemView system{matrix_.view(),        s.inverse_mass.view(), contacts.view(),
                           contact_terms_.view(), incidence.first(),     incidence.entries()};
-  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), step.dt};
-  VertexMotion motion{free_motion_.view(), dv_.view(), s.inverse_mass.view(), step.dt, solved};
+  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), rule_.h};
+  VertexMotion motion{free_motion_.view(), dv_.view(), s.inverse_mass.view(), rule_.h, solved};
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
@@ -376,12 +453,32 @@ double Implicit::move(StepContext& step, const Linearization& point) {
   State& s = step.state;
   for_each("implicit.move", mesh.cloth_vertices,
            MoveVertices{s.x0.view(), free_motion_.view(), dv_.view(), s.x1.view(),
-                        s.candidate.view(), step.dt});
+                        s.candidate.view(), rule_.h});
   return static_cast<double>(
       reduce("implicit.missed_tension", mesh.cloth_faces, Real(0),
              MissedTension{mesh.face.view(), mesh.face_inverse.view(), mesh.face_fabric.view(),
                            mesh.fabric.view(), point, dv_.view()},
              Max{}));
+}
+
+void Implicit::end(State& state, const Proximity& proximity) {
+  const Index vertices = state.mass.size();
+  const Real dt = rule_.dt;
+  if (rule_.integrator == Integrator::backward_euler) {
+    state.past.forget();
+    for_each("implicit.velocities", vertices,
+             EndVelocity{state.x0.view(), state.x1.view(), state.inverse_mass.view(),
+                         state.v.view(), Real(1) / dt});
+    return;
+  }
+  state.past.motion.resize(vertices);
+  state.past.change.resize(vertices);
+  for_each("implicit.velocities", vertices,
+           EndTwoSteps{state.x0.view(), state.x1.view(), state.candidate.view(),
+                       state.inverse_mass.view(), proximity.incidence().first(),
+                       proximity.incidence().entries(), contact_terms_.view(), rule_,
+                       state.v.view(), state.past.motion.view(), state.past.change.view()});
+  state.past.dt = static_cast<double>(dt);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -1,8 +1,8 @@
-// Stage 2: backward Euler (paper Section 2.4; Baraff and Witkin 1998), linearised at x̂: x0 first,
-// then where the last solve ended, as often as it missed tension (Newton).
+// Stage 2: backward Euler (paper Section 2.4; Baraff and Witkin 1998) or BDF2, linearised at x̂: x0
+// first, then where the last solve ended, as often as it missed tension (Newton).
 //
-//   [M + dt(dt+d)K + contacts + springs + air] Δv = dt [f(x̂) + f_ext − K (x0 + dt v − x̂ + d v)]
-//   x1 = x0 + dt (v + Δv)
+//   [M + h(h+d)K + contacts + springs + air] Δv = h [f(x̂) + f_ext − K (x' + h v' − x̂ + d v')]
+//   x1 = x' + h (v' + Δv)                      h, x', v': sim/time_rule.h; Euler: dt, x0, v
 //
 // K: positive semi-definite stiffness of membrane and bending at x̂, with the measured fabric's
 // coefficients frozen at x0; d: stiffness-proportional damping [s].
@@ -24,11 +24,16 @@ class Implicit {
   /// Writes state.candidate and the cloth part of state.x1.
   void integrate(StepContext& step, const Proximity& proximity);
 
+  /// Velocities at the end of the substep x0 → x1, and what the next one goes on from.
+  void end(State& state, const Proximity& proximity);
+
   /// Largest tension that the last linearisation missed [N/m].
   double missed_tension() const { return missed_tension_; }
 
  private:
   void assemble(StepContext& step, const Linearization& point);
+  /// v' of the rule [m/s] (vertices); writes free_motion_.
+  View<const Vec3r> move_freely(const StepContext& step);
   void solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved);
   double move(StepContext& step, const Linearization& point);
   void bend(StepContext& step, const Linearization& point);
@@ -42,7 +47,9 @@ class Implicit {
   Array<ContactTerm> contact_terms_;
   Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
+  TimeRule rule_{};                      ///< of the substep, integrate
   Array<Vec3r> free_motion_;             ///< x1 − x0 with Δv = 0 [m] (vertices)
+  Array<Vec3r> free_velocity_;           ///< v', where the rule remembers [m/s] (cloth_vertices)
   Array<Vec3r> at_, ahead_;  ///< of the linearisation, from the second iteration (cloth_vertices)
   double missed_tension_ = 0;
   LinearSolver solver_;

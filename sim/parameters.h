@@ -15,6 +15,7 @@ enum class Preconditioner { block_jacobi, multilevel };
 enum class BroadPhaseMethod { tree, hash };
 enum class MaterialEvaluation { direct, table };
 enum class BendingModel { hinge, plate };
+enum class Integrator { backward_euler, bdf2 };
 
 struct Parameters {
   // step
@@ -41,6 +42,7 @@ struct Parameters {
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
   // implicit
+  Integrator integrator = Integrator::backward_euler;
   Preconditioner preconditioner = Preconditioner::multilevel;
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
@@ -77,7 +79,7 @@ struct ParameterInfo {
   using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
                               ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*,
                               MaterialEvaluation Parameters::*, Preconditioner Parameters::*,
-                              BendingModel Parameters::*>;
+                              BendingModel Parameters::*, Integrator Parameters::*>;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol

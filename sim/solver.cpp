@@ -25,16 +25,6 @@ void upload_as(Array<To>& array, const std::vector<From>& from, const Convert& t
 
 Vec3r to_real(Vec3d a) { return convert<Real>(a); }
 
-struct EndVelocity {
-  View<const Vec3r> x0, x1;
-  View<const Real> inverse_mass;
-  View<Vec3r> v;
-  Real inverse_dt;
-  ICLOTH_HD void operator()(Index i) const {
-    v[i] = inverse_mass[i] > 0 ? inverse_dt * (x1[i] - x0[i]) : Vec3r{};
-  }
-};
-
 /// Velocity of an obstacle that moves from x0 to x1.
 struct ObstacleVelocity {
   View<const Vec3r> x0, x1;
@@ -163,9 +153,7 @@ void Solver::begin_substep(double start, double dt) {
 
 void Solver::accept_substep(double dt) {
   proximity_.keep_friction(state_, parameters_, real(dt));
-  for_each("step.velocities", mesh_.cloth_vertices,
-           EndVelocity{state_.x0.view(), state_.x1.view(), state_.inverse_mass.view(),
-                       state_.v.view(), real(1 / dt)});
+  implicit_.end(state_, proximity_);
 }
 
 void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
@@ -185,12 +173,14 @@ void Solver::save_start() {
   start_x_.copy_from(state_.x1);
   start_v_.copy_from(state_.v);
   start_held_.copy_from(proximity_.held());
+  start_past_.copy_from(state_.past);
 }
 
 void Solver::back_to_start() {
   state_.x1.copy_from(start_x_);
   state_.v.copy_from(start_v_);
   proximity_.held().copy_from(start_held_);
+  state_.past.copy_from(start_past_);
   broad_phase_.invalidate();
 }
 
@@ -274,6 +264,10 @@ Snapshot Solver::snapshot() const {
   for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
   for (const HeldForce& held : proximity_.held().download())
     s.friction.push_back({held.key, convert<double>(held.force), held.stuck != 0});
+  s.past_dt = state_.past.dt;
+  if (!(s.past_dt > 0)) return s;
+  for (const Vec3r& d : state_.past.motion.download()) s.past_motion.push_back(convert<double>(d));
+  for (const Vec3r& d : state_.past.change.download()) s.past_change.push_back(convert<double>(d));
   return s;
 }
 
@@ -292,8 +286,20 @@ void Solver::restore(const Snapshot& snapshot) {
   upload_as(proximity_.held(), snapshot.friction, [](const PairForce& held) {
     return HeldForce{held.pair, to_real(held.force), held.stuck ? 1 : 0};
   });
+  restore_past(snapshot);
   hands_.clear();
   broad_phase_.invalidate();
+}
+
+void Solver::restore_past(const Snapshot& snapshot) {
+  const auto cloth = static_cast<std::size_t>(mesh_.cloth_vertices);
+  state_.past.forget();
+  if (!(snapshot.past_dt > 0) || snapshot.past_motion.size() != cloth ||
+      snapshot.past_change.size() != cloth)
+    return;
+  state_.past.dt = snapshot.past_dt;
+  upload_as(state_.past.motion, snapshot.past_motion, to_real);
+  upload_as(state_.past.change, snapshot.past_change, to_real);
 }
 
 std::vector<HandleState> Solver::handles() const {

@@ -55,6 +55,7 @@ class Solver final : public Simulator {
   void back_to_substep_start();
   void save_start();
   void back_to_start();
+  void restore_past(const Snapshot& snapshot);
   std::vector<Vec3d> cloth_positions() const;
   std::vector<Vec3d> watched_positions() const;  ///< of the vertices that hands_ watches
 
@@ -66,6 +67,7 @@ class Solver final : public Simulator {
   State state_;
   Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
   Array<HeldForce> start_held_;     ///< likewise
+  Past start_past_;                 ///< likewise
   Hands hands_;
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions

@@ -4,6 +4,7 @@
 #include "kernels/stencil.h"
 #include "sim/parameters.h"
 #include "sim/report.h"
+#include "sim/time_rule.h"
 #include "sim/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -28,6 +29,8 @@ struct State {
   Array<Real> spring_stiffness;  ///< [N/m], 0: none (cloth_vertices), use_hands
   Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
+
+  Past past;
 };
 
 /// What one (sub)step works with.

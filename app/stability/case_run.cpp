@@ -52,6 +52,7 @@ void CaseRun::throw_cloth(std::size_t cloth, Vec3d velocity) {
   for (std::size_t c = 0; c < cloth; ++c) first += scene.cloths[c].mesh.positions.size();
   const std::size_t end = first + scene.cloths[cloth].mesh.positions.size();
   for (std::size_t v = first; v < end; ++v) state.velocities[v] = velocity;
+  state.past_dt = 0;
   simulator_->restore(state);
 }
 

@@ -29,6 +29,7 @@ void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<V
   state.positions = positions;
   state.velocities = velocities;
   state.velocities.resize(positions.size());
+  state.past_dt = 0;
   simulator_->restore(state);
 }
 

@@ -11,6 +11,7 @@ constexpr Case kCases[] = {
     {"momentum", "Newton's third law", true, momentum},
     {"energy", "second law, hyperelastic fabric", true, energy},
     {"order in dt", "backward Euler is of first order", true, time_order},
+    {"order of BDF2", "BDF2 is of second order", true, time_order_bdf2},
 
     {"hanging strip", "s(s^2 - 1) k/2 = rho g (L - x)", true, hanging_strip},
     {"catenary", "sinh z / z = L/S", true, hung_chain},

@@ -11,6 +11,7 @@ void oscillator(CaseRun& run);
 void momentum(CaseRun& run);
 void energy(CaseRun& run);
 void time_order(CaseRun& run);
+void time_order_bdf2(CaseRun& run);
 
 // cases_tension.cpp: weight and tension against stretching
 void hanging_strip(CaseRun& run);

@@ -1,0 +1,50 @@
+// How a step goes from velocities to positions: backward Euler, or the two-step formula of second
+// order (BDF2) with steps that may change. With x' and v' taken from the past,
+//
+//   x1 = x' + h v1    x' = x0 + w (x0 − x₋₁)
+//   v1 = v' + h a1    v' = v0 + w (v0 − v₋₁)
+//
+// BDF2: with r = dt / (length of the last step), h = dt (1 + r)/(1 + 2r), w = r²/(1 + 2r)
+// (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, III.5). Euler: h = dt, w =
+// 0.
+#pragma once
+
+#include "kernels/array.h"
+#include "sim/parameters.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+struct TimeRule {
+  Real dt;  ///< [s]
+  Real h;   ///< from a change of velocity to a change of position [s]
+  Real w;   ///< weight of the last step
+  Integrator integrator;
+
+  ICLOTH_HD bool remembers() const { return w != 0; }
+};
+
+/// `past`: length of the last step [s], 0: there is none to go on from.
+inline TimeRule time_rule(Integrator integrator, double dt, double past) {
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  if (integrator == Integrator::backward_euler || !(past > 0))
+    return {real(dt), real(dt), 0, integrator};
+  const double r = dt / past;
+  return {real(dt), real(dt * (1 + r) / (1 + 2 * r)), real(r * r / (1 + 2 * r)), integrator};
+}
+
+/// What a two-step rule goes on from.
+struct Past {
+  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), accept
+  Array<Vec3r> change;  ///< v0 − v₋₁ [m/s] (cloth_vertices), accept; 0 where the vertex touched
+  double dt = 0;        ///< of that step [s]; 0: none, the arrays are not used
+
+  void forget() { dt = 0; }
+  void copy_from(const Past& other) {
+    dt = other.dt;
+    if (!(dt > 0)) return;
+    motion.copy_from(other.motion);
+    change.copy_from(other.change);
+  }
+};
+
+}  // namespace icloth::ICLOTH_BUILD
