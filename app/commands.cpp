@@ -150,7 +150,7 @@ void Commands::add_render() {
 void Commands::add_bench_and_replay() {
   CLI::App* verb =
       add_verb("bench", "benchmark suites and reports", [this] { return run_bench(bench); });
-  verb->add_option("SUITE", bench.suite, "quick, paper, stability, validation or solver")
+  verb->add_option("SUITE", bench.suite, "quick, paper, accuracy, stability, validation or solver")
       ->capture_default_str();
   verb->add_option("--out", bench.out, "folder of report.html, results.json and tables");
   add_device_option(*verb, bench.device);
@@ -158,7 +158,7 @@ void Commands::add_bench_and_replay() {
       ->check(CLI::Range(1, 4096));
   verb->add_flag("--quiet", bench.quiet, "no progress line");
   verb->add_option("--case", bench.only,
-                   "stability, validation, solver: only cases whose name holds this");
+                   "accuracy, stability, validation, solver: only cases whose name holds this");
   verb->add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");
   verb->add_option("--soak", bench.soak, "stability: simulated seconds of random dragging")
       ->check(CLI::Range(0.1, 1e6))

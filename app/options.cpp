@@ -64,7 +64,7 @@ void add_device_option(CLI::App& verb, std::string& device) {
 void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required) {
   auto* scene =
       verb.add_option("SCENE", options.scene,
-                      "built-in name (scarf sphere twisting funnel drape), scene JSON or mesh "
+                      "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
                       "file");
   if (scene_required) scene->required();
   add_device_option(verb, options.device);

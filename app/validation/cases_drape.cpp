@@ -5,6 +5,7 @@
 
 #include "app/validation/case_run.h"
 #include "app/validation/cases.h"
+#include "app/validation/shadow.h"
 #include "app/validation/strips.h"
 #include "sim/material_io.h"
 
@@ -72,34 +73,10 @@ Cloth ring_cloth(double edge, const Material& material) {
 
 /// Area of the shadow on the ground [m²], by squares of half a millimetre.
 double shadow(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
-  constexpr double kCell = 5e-4;
-  constexpr int kCount = 2 * 320;  // to 16 cm
-  std::vector<char> covered(std::size_t{kCount} * kCount, 0);
-  const auto place = [&](Index v) {
-    const Vec3d p = x[static_cast<std::size_t>(v)];
-    return Vec2d{p.x / kCell + kCount / 2.0, p.z / kCell + kCount / 2.0};
-  };
-  const auto side = [](Vec2d a, Vec2d b, Vec2d p) {
-    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-  };
-  for (const Triangle& f : faces) {
-    const Vec2d a = place(f[0]), b = place(f[1]), c = place(f[2]);
-    const auto clamp = [](double value) {
-      return static_cast<int>(std::clamp(value, 0.0, kCount - 1.0));
-    };
-    for (int j = clamp(std::min({a.y, b.y, c.y})); j <= clamp(std::max({a.y, b.y, c.y})); ++j)
-      for (int i = clamp(std::min({a.x, b.x, c.x})); i <= clamp(std::max({a.x, b.x, c.x})); ++i) {
-        const Vec2d p{i + 0.5, j + 0.5};
-        const double u = side(a, b, p), v = side(b, c, p), w = side(c, a, p);
-        if ((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))
-          covered[static_cast<std::size_t>(j * kCount + i)] = 1;
-      }
-  }
-  for (int j = 0; j < kCount; ++j)
-    for (int i = 0; i < kCount; ++i)
-      if (std::hypot(i + 0.5 - kCount / 2.0, j + 0.5 - kCount / 2.0) * kCell < kDisc)
-        covered[static_cast<std::size_t>(j * kCount + i)] = 1;
-  return kCell * kCell * static_cast<double>(std::ranges::count(covered, 1));
+  Shadow ground({-0.16, -0.16}, {0.16, 0.16}, 5e-4);
+  ground.add(x, faces);
+  ground.add_disc({0, 0}, kDisc);
+  return ground.area();
 }
 
 /// Drape coefficient [%] of a fabric at rest.

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/accuracy.h"
 #include "app/bench/paper.h"
 #include "app/bench/solver.h"
 #include "app/bench/stability.h"
@@ -114,11 +115,12 @@ int run_quick(const BenchOptions& options) {
 int run_bench(const BenchOptions& options) {
   if (options.suite == "quick") return run_quick(options);
   if (options.suite == "paper") return run_paper(options);
+  if (options.suite == "accuracy") return run_accuracy(options);
   if (options.suite == "stability") return run_stability(options);
   if (options.suite == "validation") return run_validation(options);
   if (options.suite == "solver") return run_solver(options);
   throw InputError("bench: suite '" + options.suite +
-                   "', expected quick, paper, stability, validation or solver");
+                   "', expected quick, paper, accuracy, stability, validation or solver");
 }
 
 }  // namespace icloth

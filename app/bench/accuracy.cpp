@@ -1,0 +1,208 @@
+#include "app/bench/accuracy.h"
+
+#include <cstdio>
+
+#include "app/bench/parts.h"
+#include "app/bench/suite.h"
+#include "app/bench/trial.h"
+#include "app/progress.h"
+#include "app/report/report.h"
+
+namespace icloth {
+namespace {
+
+// Damped a little: without any, waves as short as an edge ring for ever, each step length makes
+// other ones, and no two runs come together.
+const std::string kDamping = "material.damping=0.002";
+
+const TrialScene kScenes[] = {
+    {"flag", {"triangles=2500", "step.time_step=0.01", kDamping}, 0.1, 4, 4},
+    {"scarf", {"triangles=2500", "step.time_step=0.01", kDamping}, 0.1, 5, 2},
+    {"sphere", {"triangles=3000", "step.time_step=0.01", kDamping}, 0.2, 3, 3},
+    {"drape", {"triangles=3000", "step.time_step=0.01", kDamping}, 0.1, 5, 2},
+};
+
+/// One point of the curves: a setting that differs from the scene's own in one thing.
+struct Setting {
+  const char* knob;
+  std::string value;
+  std::vector<std::string> overrides;
+  bool precise = false;  ///< in double precision
+};
+
+std::vector<Setting> settings() {
+  std::vector<Setting> list{{"as in the scene", "1/100 s", {}}};
+  const auto add = [&](const char* knob, const char* parameter,
+                       std::initializer_list<const char*> values) {
+    for (const char* value : values)
+      list.push_back({knob, value, {std::string(parameter) + "=" + value}});
+  };
+  for (const char* dt : {"0.02", "0.005", "0.0025"})
+    list.push_back({"time step", dt, {std::string("step.time_step=") + dt}});
+  for (const char* dt : {"0.02", "0.01", "0.005", "0.0025"})
+    list.push_back(
+        {"BDF2, time step", dt, {std::string("step.time_step=") + dt, "implicit.integrator=bdf2"}});
+  add("Newton iterations", "implicit.newton_iterations", {"1", "2", "3"});
+  list.push_back({"Newton iterations",
+                  "20, to 0.1 N/m",
+                  {"implicit.newton_iterations=20", "implicit.newton_tolerance=0.1"}});
+  add("Newton tolerance", "implicit.newton_tolerance", {"0.5", "50"});
+  add("CG tolerance", "implicit.cg_tolerance", {"0.1", "0.03", "0.01", "0.001", "0.0001"});
+  add("preconditioner", "implicit.preconditioner", {"block_jacobi", "multilevel"});
+  add("contact passes", "implicit.contact_passes", {"1", "2", "3"});
+  add("contact tolerance", "implicit.contact_tolerance", {"0.1", "0.01", "0.0001"});
+  add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});
+  add("zone iterations", "impact_zones.iterations", {"10", "30", "1000"});
+  list.push_back({"precision", "f64", {}, true});
+  return list;
+}
+
+/// Combinations of the settings that matter most, from which the presets are picked.
+std::vector<Setting> combinations() {
+  std::vector<Setting> list;
+  for (const char* integrator : {"backward_euler", "bdf2"})
+    for (const char* dt : {"0.02", "0.01", "0.005"})
+      for (const char* tolerance : {"0.05", "0.01", "0.001"})
+        for (const char* newton : {"1", "3"})
+          list.push_back(
+              {"combination",
+               std::string(integrator) + ", " + dt + " s, CG " + tolerance + ", Newton " + newton,
+               {std::string("implicit.integrator=") + integrator,
+                std::string("step.time_step=") + dt,
+                std::string("implicit.cg_tolerance=") + tolerance,
+                std::string("implicit.newton_iterations=") + newton}});
+  return list;
+}
+
+std::vector<std::string> reference_settings(const char* time_step) {
+  return {std::string("step.time_step=") + time_step,
+          "implicit.integrator=bdf2",
+          "implicit.cg_tolerance=1e-7",
+          "implicit.cg_max_iterations=5000",
+          "implicit.newton_iterations=20",
+          "implicit.newton_tolerance=1e-3",
+          "implicit.contact_passes=20",
+          "implicit.contact_tolerance=1e-5"};
+}
+
+struct Point {
+  Setting setting;
+  Trial trial;
+  Errors errors;
+  bool front = false;
+};
+
+std::string percent(double share, int digits = 3) {
+  return share < 0 ? "" : format_number(100 * share, digits);
+}
+
+Table table_of(const std::string& scene, const std::vector<Point>& points, double usual) {
+  Table table("accuracy_" + scene, "Speed against error: " + scene,
+              {"setting", "value", "s a simulated second", "times faster", "CG iterations a step",
+               "position [mm]", "energy [%]", "momentum [%]", "covered area [%]", "pressed in [%]",
+               "violation [δ]", "penetrations", "front"});
+  for (const Point& p : points)
+    table.add({p.setting.knob, p.setting.value, format_number(p.trial.seconds, 3),
+               format_number(usual / p.trial.seconds, 3), format_number(p.trial.cg_iterations, 3),
+               p.errors.position < 0 ? "" : format_number(1e3 * p.errors.position, 3),
+               percent(p.errors.energy), percent(p.errors.momentum), percent(p.errors.shadow),
+               percent(p.trial.pressed, 2), format_number(p.trial.violation, 2),
+               p.trial.finished ? std::to_string(p.trial.penetrations) : "refused",
+               p.front ? "*" : ""});
+  return table;
+}
+
+/// One series a knob; the front as a line of its own.
+Plot plot_of(const std::string& scene, const std::vector<Point>& points, const char* what,
+             double Errors::*error) {
+  Plot plot{
+      std::string(what) + ": " + scene, "seconds a simulated second", what, true, true, true, {}};
+  Series front{"front", {}};
+  for (const Point& p : points) {
+    const std::pair point(p.trial.seconds, p.errors.*error);
+    if (plot.series.empty() || plot.series.back().name != p.setting.knob)
+      plot.series.push_back({p.setting.knob, {}});
+    plot.series.back().points.push_back(point);
+    if (p.front) front.points.push_back(point);
+  }
+  std::ranges::sort(front.points);
+  plot.series.push_back(std::move(front));
+  return plot;
+}
+
+class AccuracySuite {
+ public:
+  AccuracySuite(Build build, Report& report) : build_(build), report_(report) {}
+
+  void run(const TrialScene& scene) {
+    report_.heading(scene.name);
+    const Trial reference = run_trial(scene, reference_settings("0.000625"), Build::cpu64, 1);
+    const Trial coarser = run_trial(scene, reference_settings("0.00125"), Build::cpu64, 1);
+    const Errors own = compare(coarser, reference, scene.samples_alike);
+    report_.text("The reference took " + format_number(reference.seconds, 3) +
+                 " s a simulated second. With twice its step it is " +
+                 format_number(1e3 * own.position, 3) + " mm, " + percent(own.energy) +
+                 " % of the energy and " + percent(own.shadow) +
+                 " % of the area away: errors below that are not resolved.");
+    std::vector<Setting> list = settings();
+    for (Setting& s : combinations()) list.push_back(std::move(s));
+    const std::vector<Point> points = measure(scene, list, reference);
+    report_.add(table_of(scene.name, points, points[0].trial.seconds));
+    report_.add(plot_of(scene.name, points, "position error [m]", &Errors::position));
+    report_.add(plot_of(scene.name, points, "energy error", &Errors::energy));
+  }
+
+  bool clean() const { return clean_; }
+
+ private:
+  std::vector<Point> measure(const TrialScene& scene, const std::vector<Setting>& list,
+                             const Trial& reference) {
+    constexpr int kRepeats = 2;
+    std::vector<Point> points;
+    std::vector<std::pair<double, double>> places;
+    Progress progress(scene.name, static_cast<long>(list.size()), false);
+    for (const Setting& setting : list) {
+      Point point{
+          setting,
+          run_trial(scene, setting.overrides, setting.precise ? Build::cpu64 : build_, kRepeats),
+          {}};
+      point.errors = compare(point.trial, reference, scene.samples_alike);
+      clean_ = clean_ && point.trial.finished && point.trial.penetrations == 0;
+      places.emplace_back(point.trial.seconds, point.errors.position);
+      points.push_back(std::move(point));
+      progress.update(static_cast<long>(points.size()));
+    }
+    const std::vector<bool> front = pareto_front(places);
+    for (std::size_t k = 0; k < points.size(); ++k) points[k].front = front[k];
+    return points;
+  }
+
+  Build build_;
+  Report& report_;
+  bool clean_ = true;
+};
+
+}  // namespace
+
+int run_accuracy(const BenchOptions& options) {
+  make_output_folder(options.out);
+  set_thread_count(options.threads);
+  const Build build = options.device.empty() ? Build::cpu32 : chosen_builds(options.device).front();
+  Report report("icloth bench accuracy", describe_machine(options.threads, build == Build::cuda32));
+  AccuracySuite suite(build, report);
+  bool any = false;
+  for (const TrialScene& scene : kScenes) {
+    if (!chosen(options, scene.name)) continue;
+    suite.run(scene);
+    any = true;
+  }
+  if (chosen(options, "parts")) show_parts(build, report), any = true;
+  if (!any) throw no_such_case(options);
+  if (!options.out.empty()) {
+    report.write(options.out);
+    std::printf("%s/report.html\n", options.out.c_str());
+  }
+  return suite.clean() ? 0 : 1;
+}
+
+}  // namespace icloth

@@ -1,0 +1,12 @@
+// Speed against error (`icloth bench accuracy`): what each setting costs and what it breaks.
+#pragma once
+
+#include "app/verbs/bench.h"
+
+namespace icloth {
+
+/// Sweeps the settings on small versions of four scenes against a reference in double precision
+/// with a sixteenth of the time step. Returns 1 when a run was refused or left penetrations.
+int run_accuracy(const BenchOptions& options);
+
+}  // namespace icloth

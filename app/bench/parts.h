@@ -1,0 +1,12 @@
+// What each part of a scene costs: one scene that gets them in turn.
+#pragma once
+
+#include "app/report/report.h"
+#include "sim/simulator.h"
+
+namespace icloth {
+
+/// Adds the table to the report.
+void show_parts(Build build, Report& report);
+
+}  // namespace icloth

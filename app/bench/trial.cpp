@@ -1,0 +1,141 @@
+#include "app/bench/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/headless.h"
+#include "app/validation/shadow.h"
+#include "app/validation/strips.h"
+#include "sim/error.h"
+#include "sim/scene_io.h"
+
+namespace icloth {
+namespace {
+
+/// Area that the cloths cover from above; squares of 2 mm on the ground about them.
+double shadow_of(const Scene& scene, const std::vector<Vec3d>& x) {
+  Vec2d low{1e9, 1e9}, high{-1e9, -1e9};
+  for (const Vec3d& p : x) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.z)};
+  }
+  constexpr double kCell = 2e-3;
+  validation::Shadow ground({low.x - kCell, low.y - kCell}, {high.x + kCell, high.y + kCell},
+                            kCell);
+  auto first = x.begin();
+  for (const Cloth& cloth : scene.cloths) {
+    const auto count = static_cast<std::ptrdiff_t>(cloth.mesh.positions.size());
+    ground.add({first, first + count}, cloth.mesh.faces);
+    first += count;
+  }
+  return ground.area();
+}
+
+Sample sample_of(const Simulator& simulator, std::size_t vertices, const StepReport& report) {
+  Snapshot state = simulator.snapshot();
+  state.positions.resize(vertices);
+  state.velocities.resize(vertices);
+  return {std::move(state.positions),
+          std::move(state.velocities),
+          report.kinetic_energy + report.elastic_energy + report.gravity_energy,
+          report.kinetic_energy,
+          report.elastic_energy,
+          report.gravity_energy};
+}
+
+void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
+  HeadlessJob job = proto;
+  const Parameters& p = job.scene->parameters;
+  const std::size_t vertices = trial.mass.size();
+  Trial now;
+  double ms = 0, iterations = 0;
+  job.steps = every * samples;
+  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+    if (!report) return;
+    ms += report->ms_total;
+    iterations += static_cast<double>(report->cg_iterations);
+    now.pressed = std::max(now.pressed, 1 - report->min_gap / p.thickness);
+    now.violation = std::max(now.violation, report->zone_violation / p.offset);
+    if (report->step % every == 0) now.samples.push_back(sample_of(simulator, vertices, *report));
+  };
+  const HeadlessResult result = run_headless(job);
+  now.mass = std::move(trial.mass);
+  now.penetrations = result.penetrations;
+  now.finished = result.refused.empty() && !result.start_refused;
+  now.seconds = 1e-3 * ms / (p.time_step * static_cast<double>(job.steps));
+  now.cg_iterations = iterations / static_cast<double>(job.steps);
+  if (trial.seconds > 0) now.seconds = std::min(now.seconds, trial.seconds);
+  trial = std::move(now);
+}
+
+}  // namespace
+
+Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
+                int repeats) {
+  std::vector<std::string> all = scene.overrides;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  HeadlessJob job;
+  job.scene = load_scene(scene.name, all);
+  job.build = build;
+  job.quiet = true;
+  const double per_sample = scene.interval / job.scene->parameters.time_step;
+  const long every = std::lround(per_sample);
+  if (std::fabs(per_sample - static_cast<double>(every)) > 1e-6)
+    throw InputError("a time step of " + std::to_string(job.scene->parameters.time_step) +
+                     " s does not divide the time between samples");
+  Trial trial;
+  for (const Cloth& cloth : job.scene->cloths) {
+    const std::vector<double> mass = validation::lumped_mass(cloth);
+    trial.mass.insert(trial.mass.end(), mass.begin(), mass.end());
+  }
+  for (int k = 0; k < repeats; ++k) run_once(job, every, scene.samples, trial);
+  for (const Sample& sample : trial.samples)
+    trial.shadow += shadow_of(*job.scene, sample.positions) / scene.samples;
+  return trial;
+}
+
+Errors compare(const Trial& trial, const Trial& reference, int samples_alike) {
+  Errors errors;
+  const std::size_t samples = std::min(trial.samples.size(), reference.samples.size());
+  const bool same_mesh = trial.mass.size() == reference.mass.size();
+  double squares = 0, mass = 0, energy_change = 0, momentum_size = 0;
+  const double start_gravity = reference.samples.empty() ? 0 : reference.samples[0].gravity;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const Sample &a = trial.samples[k], &b = reference.samples[k];
+    energy_change =
+        std::max(energy_change, b.kinetic + b.elastic + std::fabs(b.gravity - start_gravity));
+    errors.energy = std::max(errors.energy, std::fabs(a.energy - b.energy));
+    Vec3d momentum_error;
+    double size = 0;
+    for (std::size_t i = 0; same_mesh && i < trial.mass.size(); ++i) {
+      const double m = trial.mass[i];
+      if (k < static_cast<std::size_t>(samples_alike)) {
+        squares += m * norm2(a.positions[i] - b.positions[i]);
+        mass += m;
+      }
+      momentum_error += m * (a.velocities[i] - b.velocities[i]);
+      size += m * norm(b.velocities[i]);
+    }
+    errors.momentum = std::max(errors.momentum, norm(momentum_error));
+    momentum_size = std::max(momentum_size, size);
+  }
+  errors.position = same_mesh ? std::sqrt(squares / mass) : -1;
+  errors.energy /= energy_change;
+  errors.momentum = same_mesh ? errors.momentum / momentum_size : -1;
+  errors.shadow = std::fabs(trial.shadow / reference.shadow - 1);
+  return errors;
+}
+
+std::vector<bool> pareto_front(const std::vector<std::pair<double, double>>& points) {
+  std::vector<bool> front(points.size(), true);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const auto& [x, y] : points) {
+      const bool worse = x <= points[i].first && y <= points[i].second &&
+                         (x < points[i].first || y < points[i].second);
+      if (worse) front[i] = false;
+    }
+  }
+  return front;
+}
+
+}  // namespace icloth

@@ -1,0 +1,58 @@
+// One run of a scene, timed and sampled, and how far it is from another.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/simulator.h"
+
+namespace icloth {
+
+/// A scene as it is run for speed against error.
+struct TrialScene {
+  const char* name;
+  std::vector<std::string> overrides;
+  double interval;  ///< between samples [s]
+  int samples;
+  /// Of which positions are compared. Later, folds that depend on the last digit have formed, and
+  /// only energies and areas can be.
+  int samples_alike;
+};
+
+/// State of the cloths at one time.
+struct Sample {
+  std::vector<Vec3d> positions, velocities;  ///< of the cloths' vertices
+  double energy = 0;                         ///< kinetic, elastic and of gravity [J]
+  double kinetic = 0, elastic = 0, gravity = 0;
+};
+
+struct Trial {
+  std::vector<Sample> samples;
+  std::vector<double> mass;  ///< of the cloths' vertices [kg]
+  double seconds = 0;        ///< of wall time a simulated second, the fastest run counts
+  double shadow = 0;         ///< area that the cloths cover from above, mean of the samples [m²]
+  double pressed = 0;        ///< deepest way into the thickness: 1 − smallest gap / h
+  double violation = 0;      ///< largest of the impact zones, of their offset δ
+  double cg_iterations = 0;  ///< of a step
+  std::size_t penetrations = 0;
+  bool finished = false;  ///< no step was refused
+};
+
+/// `overrides` come after those of the scene; the time step must divide the interval.
+Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
+                int repeats);
+
+/// Distances from a reference; relative ones are of the largest of the reference's samples.
+struct Errors {
+  double position = 0;  ///< root of the mean square over mass and samples [m]; −1: another mesh
+  double energy = 0;    ///< largest difference, of what the energies change by
+  double momentum = 0;  ///< largest |Σ m (v − v_ref)|, of Σ m |v_ref|
+  double shadow = 0;    ///< of the area
+};
+
+Errors compare(const Trial& trial, const Trial& reference, int samples_alike);
+
+/// Whether no other point is at most as slow and at most as wrong, both x and y ≤ and one <.
+std::vector<bool> pareto_front(const std::vector<std::pair<double, double>>& points);
+
+}  // namespace icloth
