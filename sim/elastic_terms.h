@@ -25,7 +25,31 @@ ICLOTH_HD inline int block_slot(int a, int b) { return a == 0 ? b : (a == 1 ? b 
 struct Wind {
   Vec3r velocity;      ///< [m/s]
   Real density, drag;  ///< [kg/m³], tangential [kg/(m² s)]
+
+  ICLOTH_HD bool blows() const { return density > 0 || drag > 0; }
 };
+
+/// What the air does to each corner of a face: force − slope Δv of the corner.
+struct AirForce {
+  Vec3r force;  ///< at the velocities given [N]
+  Mat3r slope;  ///< [kg/s]
+};
+
+/// Wind on one face: pressure ½-free form ρ A |v_n| v_n n plus a tangential drag, a third to each
+/// vertex; its derivative in the velocity goes to the diagonal.
+ICLOTH_HD inline AirForce air_force(const Wind& wind, const Vec3r xs[3], const Vec3r vs[3]) {
+  const Vec3r normal2 = cross(xs[1] - xs[0], xs[2] - xs[0]);
+  const Real twice_area = norm(normal2);
+  if (!(twice_area > 0)) return {};
+  const Real share = twice_area / Real(6);
+  const Vec3r n = (Real(1) / twice_area) * normal2;
+  const Vec3r relative = wind.velocity - (Real(1) / Real(3)) * (vs[0] + vs[1] + vs[2]);
+  const Real vn = dot(n, relative);
+  const Real stiff = 2 * share * wind.density * std::fabs(vn), drag = share * wind.drag;
+  return {
+      (share * wind.density * std::fabs(vn) * vn) * n + (share * wind.drag) * (relative - vn * n),
+      (stiff - drag) * outer(n, n) + Mat3r::identity(drag)};
+}
 
 /// Where the elastic forces are linearised: f(x1) ≈ f(at) − K(at) (x1 − at), stiffness damping with
 /// the time constant d included, x1 = at + ahead + dt Δv.
@@ -89,26 +113,15 @@ struct MembraneTerms {
         if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
       }
     }
-    if (wind.density > 0 || wind.drag > 0) add_air(t, at, v);
+    if (wind.blows()) add_air(t, at, v);
     term[i] = t;
   }
 
-  /// Wind on one face: pressure ½-free form ρ A |v_n| v_n n plus a tangential drag, a third to
-  /// each vertex; its derivative in the velocity goes to the diagonal.
   ICLOTH_HD void add_air(FaceTerm& t, const Vec3r xs[3], const Vec3r vs[3]) const {
-    const Vec3r normal2 = cross(xs[1] - xs[0], xs[2] - xs[0]);
-    const Real twice_area = norm(normal2);
-    if (!(twice_area > 0)) return;
-    const Real share = twice_area / Real(6);
-    const Vec3r n = (Real(1) / twice_area) * normal2;
-    const Vec3r relative = wind.velocity - (Real(1) / Real(3)) * (vs[0] + vs[1] + vs[2]);
-    const Real vn = dot(n, relative);
-    const Vec3r force =
-        (share * wind.density * std::fabs(vn) * vn) * n + (share * wind.drag) * (relative - vn * n);
-    const Real stiff = 2 * share * wind.density * std::fabs(vn), drag = share * wind.drag;
-    const Mat3r h = point.dt * ((stiff - drag) * outer(n, n) + Mat3r::identity(drag));
+    const AirForce air = air_force(wind, xs, vs);
+    const Mat3r h = point.dt * air.slope;
     for (int a = 0; a < 3; ++a) {
-      t.impulse[a] += point.dt * force;
+      t.impulse[a] += point.dt * air.force;
       t.block[block_slot(a, a)] += h;
     }
   }

@@ -198,6 +198,7 @@ void ImpactZones::solve_zones(const SolveZone<Solver>& solve) {
 void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   State& s = step.state;
   const Parameters& p = step.parameters;
+  corrected_ = true;
   merge(impacts);
   label_zones(step);
   order_by_zone(step);
@@ -280,10 +281,12 @@ void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
 void ImpactZones::back_to_candidate(StepContext& step) {
   for_each("impact_zones.candidate", step.mesh.cloth_vertices,
            TakeCandidate{step.state.candidate.view(), step.state.x1.view()});
+  corrected_ = false;
 }
 
 bool ImpactZones::roll_back(StepContext& step, const Array<Impact>& impacts) {
   const Index vertices = step.mesh.cloth_vertices;
+  corrected_ = true;
   slots_.resize(impacts.size());
   for_each("impact_zones.corners", impacts.size(), ImpactCorners{impacts.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);

@@ -12,7 +12,10 @@ namespace icloth::ICLOTH_BUILD {
 class ImpactZones {
  public:
   /// Forgets the constraints of the last step.
-  void begin_step() { kept_.resize(0); }
+  void begin_step() {
+    kept_.resize(0);
+    corrected_ = false;
+  }
 
   /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
   void solve(StepContext& step, const Array<Impact>& impacts);
@@ -23,6 +26,8 @@ class ImpactZones {
   /// when all of them were there already.
   bool roll_back(StepContext& step, const Array<Impact>& impacts);
 
+  /// Whether x1 may be another than the implicit step left it.
+  bool corrected() const { return corrected_; }
   /// Largest |x1 − x*| of the last solve [m].
   Real largest_correction() const { return largest_correction_; }
 
@@ -63,6 +68,7 @@ class ImpactZones {
   Array<ZoneResult> results_;
   Array<std::uint8_t> dirty_;
   Real largest_correction_ = 0;
+  bool corrected_ = false;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "kernels/parallel.h"
+#include "sim/work.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -74,6 +75,16 @@ struct VertexMotion {
     }
     return motion;
   }
+
+  /// Of the cloth's side of the contact, as solved.
+  ICLOTH_HD Vec3r of_cloth(const Contact& c) const {
+    Vec3r sum{};
+    for (int a = 0; a < 4; ++a) {
+      const Index i = c.s.v[a];
+      if (inverse_mass[i] > 0) sum += c.s.w[a] * (free[i] + dt * dv[i]);
+    }
+    return sum;
+  }
 };
 
 struct ContactTerms {
@@ -94,8 +105,9 @@ struct ContactTerms {
 struct Contradiction {
   double error;  ///< contact forces that acted and should not have, or the other way round [N]
   double load;   ///< what the contacts carry [N]
+  double work;   ///< of the contacts on the cloth [J]
   ICLOTH_HD friend Contradiction operator+(Contradiction a, Contradiction b) {
-    return {a.error + b.error, a.load + b.load};
+    return {a.error + b.error, a.load + b.load, a.work + b.work};
   }
 };
 
@@ -111,9 +123,11 @@ struct Contradicts {
     const Contact& c = contacts[i];
     const ContactMotion m = motion.of(c);
     const Real normal = normal_force(c, law, m.end);
-    Vec3r wrong = applied_force(term[i], law, m) - normal * c.normal;
+    const Vec3r applied = applied_force(term[i], law, m);
+    Vec3r wrong = applied - normal * c.normal;
     if (c.friction > 0) wrong = wrong - friction_of(c, law, m.end, normal).force;
-    return {static_cast<double>(norm(wrong)), static_cast<double>(normal)};
+    return {static_cast<double>(norm(wrong)), static_cast<double>(normal),
+            dot_double(applied, motion.of_cloth(c))};
   }
 };
 
@@ -337,17 +351,13 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Parameters& p = step.parameters;
-  const Wind wind{
-      {static_cast<Real>(p.wind_x), static_cast<Real>(p.wind_y), static_cast<Real>(p.wind_z)},
-      static_cast<Real>(p.air_density),
-      static_cast<Real>(p.air_drag)};
   const Real damping_extra = static_cast<Real>(p.damping_extra);
   face_terms_.resize(mesh.cloth_faces);
   rhs_.resize(mesh.cloth_vertices);
   for_each("implicit.membrane", mesh.cloth_faces,
            MembraneTerms{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
                          mesh.face_fabric.view(), mesh.fabric.view(), point, face_terms_.view(),
-                         damping_extra, wind});
+                         damping_extra, wind_of(p)});
   bend(step, point);
   for_each("implicit.assemble", mesh.cloth_vertices,
            AssembleRow{matrix_.row_first.view(),
@@ -392,6 +402,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     point.at = at_.view();
     point.ahead = ahead_.view();
   }
+  outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, dv_.view());
 }
 
 View<const Vec3r> Implicit::move_freely(const StepContext& step) {
@@ -438,11 +449,13 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
+    lost_momentum_ = solution.lost;
     ++step.report.newton_iterations;
     motion.solved = true;
     const Contradiction contradiction =
-        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0},
+        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
                Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
+    contact_work_ = contradiction.work;
     if (!(contradiction.error > step.parameters.contact_tolerance * contradiction.load)) break;
   }
 }

@@ -6,6 +6,15 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+/// Squared length and sum of a residual.
+struct ResidualSums {
+  double rr;
+  Vec3d sum;
+  ICLOTH_HD friend ResidualSums operator+(const ResidualSums& a, const ResidualSums& b) {
+    return {a.rr + b.rr, a.sum + b.sum};
+  }
+};
+
 /// The whole solve, for one team: every thread goes through the same iterations and has the same
 /// scalars, so that nothing has to be read back in between.
 template <class Preconditioner>
@@ -57,6 +66,18 @@ struct ConjugateGradients {
   /// Row i of r = b − A x; q is A x.
   ICLOTH_HD Vec3r true_residual(Index i) const {
     return r[i] = system.inverse_mass[i] > 0 ? b[i] - q[i] : Vec3r{};
+  }
+
+  template <class Team>
+  ICLOTH_HD ResidualSums true_residuals(Team& team) const {
+    multiply(team, x);
+    return team.reduce(
+        b.size(), ResidualSums{},
+        [&](Index i) {
+          const Vec3r residual = true_residual(i);
+          return ResidualSums{dot_double(residual, residual), convert<double>(residual)};
+        },
+        Sum{});
   }
 
   template <class Team>
@@ -112,17 +133,14 @@ struct ConjugateGradients {
       const Real beta = static_cast<Real>(dots.rz / rz);
       team.for_each(n, [&](Index i) { p[i] = z[i] + beta * p[i]; });
     }
-    multiply(team, x);
-    const double rr = team.reduce(
-        n, 0.0,
-        [&](Index i) {
-          const Vec3r residual = true_residual(i);
-          return dot_double(residual, residual);
-        },
-        Sum{});
+    ResidualSums end = true_residuals(team);
     // In single precision a very stiff system can run away from the solution.
-    if (!(rr <= best_rr)) team.for_each(n, [&](Index i) { x[i] = best[i]; });
-    result.residual = std::sqrt((rr <= best_rr ? rr : best_rr) / bb);
+    if (!(end.rr <= best_rr)) {
+      team.for_each(n, [&](Index i) { x[i] = best[i]; });
+      end = true_residuals(team);
+    }
+    result.residual = std::sqrt(end.rr / bb);
+    result.lost = end.sum;
     return result;
   }
 };

@@ -10,6 +10,7 @@ namespace icloth::ICLOTH_BUILD {
 struct LinearSolution {
   Index iterations = 0;
   double residual = 0;  ///< ‖b − Ax‖₂ / ‖b‖₂, computed anew at the end
+  Vec3d lost;           ///< Σ over the rows of b − Ax, likewise [N·s]
   double bytes = 0;     ///< that the iterations had to read and write at least
 };
 

@@ -46,6 +46,8 @@ constexpr ReportColumn kColumns[] = {
     {"zone_complementarity", &R::zone_complementarity},
     {"zone_momentum", &R::zone_momentum},
     {"box_tests", &R::box_tests},
+    {"momentum_error", &R::momentum_error},
+    {"energy_balance", &R::energy_balance},
 };
 
 }  // namespace

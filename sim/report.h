@@ -40,6 +40,16 @@ struct StepReport {
   double max_strain = 0;  ///< largest principal stretch − 1
   double max_speed = 0;   ///< [m/s]
   double min_gap = 0;     ///< smallest proximity distance at the start of the step [m], h if none
+  /// |Σ b − AΔv| / (dt Σ m) over the free vertices, of the last solve of a substep and the largest
+  /// of all substeps: the force per mass that CG, where it stopped, makes or loses [m/s²].
+  double momentum_error = 0;
+  /// Kinetic, elastic and gravity energy after the step, less those before it, less the work done
+  /// on the cloth in it by air, hands, contacts (repulsion and friction, as the linear terms
+  /// applied them) and impact zones (all that they changed in those energies) [J]. Negative: what
+  /// damping, of the fabric and of the integrator, took away; positive: made from nothing, an
+  /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
+  /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.
+  double energy_balance = 0;
   std::uint64_t state_hash = 0;
 
   bool accepted = true;                  ///< false: the state before the step was kept

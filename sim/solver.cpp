@@ -124,10 +124,14 @@ void Solver::set_parameters(const Parameters& parameters) {
   if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
   pattern_bends_ = mesh_.bends;
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
+  free_mass_ = 0;
   for (std::size_t i = 0; i < world_.mass.size(); ++i) {
     mass.push_back(real(parameters.density_scale * world_.mass[i]));
-    if (world_.pinned[i] == 0) inverse[i] = Real(1) / mass[i];
+    if (world_.pinned[i] != 0) continue;
+    inverse[i] = Real(1) / mass[i];
+    free_mass_ += static_cast<double>(mass[i]);
   }
+  energy_.reset();
   state_.mass.upload(mass);
   state_.inverse_mass.upload(inverse);
   broad_phase_.invalidate();  // a new thickness needs other boxes
@@ -151,9 +155,26 @@ void Solver::begin_substep(double start, double dt) {
   }
 }
 
-void Solver::accept_substep(double dt) {
+void Solver::accept_substep(StepReport& report, double dt) {
+  const double error = norm(implicit_.lost_momentum()) / (free_mass_ * dt);
+  if (free_mass_ > 0) report.momentum_error = std::max(report.momentum_error, error);
   proximity_.keep_friction(state_, parameters_, real(dt));
   implicit_.end(state_, proximity_);
+  work_ += implicit_.work();
+  if (impact_zones_.corrected()) work_ += zone_work(dt);
+}
+
+/// How much the impact zones changed the energy: that of the end, less that of the candidate [J].
+double Solver::zone_work(double dt) {
+  candidate_v_.resize(mesh_.cloth_vertices);
+  for_each("step.velocities", mesh_.cloth_vertices,
+           EndVelocity{state_.x0.view(), state_.candidate.view(), state_.inverse_mass.view(),
+                       candidate_v_.view(), real(1 / dt)});
+  const auto energy = [&](View<const Vec3r> x, View<const Vec3r> v) {
+    return figures_of(mesh_, parameters_, state_.mass.view(), x, v).energy();
+  };
+  return energy(state_.x1.view(), state_.v.view()) -
+         energy(state_.candidate.view(), candidate_v_.view());
 }
 
 void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
@@ -174,6 +195,10 @@ void Solver::save_start() {
   start_v_.copy_from(state_.v);
   start_held_.copy_from(proximity_.held());
   start_past_.copy_from(state_.past);
+  work_ = 0;
+  if (!energy_)
+    energy_ = figures_of(mesh_, parameters_, state_.mass.view(), state_.x1.view(), state_.v.view())
+                  .energy();
 }
 
 void Solver::back_to_start() {
@@ -289,6 +314,7 @@ void Solver::restore(const Snapshot& snapshot) {
   restore_past(snapshot);
   hands_.clear();
   broad_phase_.invalidate();
+  energy_.reset();
 }
 
 void Solver::restore_past(const Snapshot& snapshot) {

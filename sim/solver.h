@@ -44,7 +44,8 @@ class Solver final : public Simulator {
   bool resolve_by_rollback(StepContext& step);
   void find_impacts(StepContext& step, bool first_round);
   void begin_substep(double start, double dt);
-  void accept_substep(double dt);
+  void accept_substep(StepReport& report, double dt);
+  double zone_work(double dt);
   void report_offending(StepReport& report) const;
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
@@ -74,6 +75,10 @@ class Solver final : public Simulator {
   mutable Array<Vec3r> watched_position_;  ///< likewise
   double time_ = 0;
   std::int64_t step_index_ = 0;
+  double free_mass_ = 0;          ///< of the vertices that are not pinned [kg], set_parameters
+  std::optional<double> energy_;  ///< of the state, where it is known [J], step
+  double work_ = 0;               ///< on the cloth in the step so far [J], accept_substep
+  Array<Vec3r> candidate_v_;      ///< velocity without impacts (cloth_vertices), zone_work
 
   BroadPhase broad_phase_;
   Proximity proximity_;

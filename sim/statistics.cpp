@@ -72,15 +72,15 @@ struct PlateEnergy {
   }
 };
 
-double bending_energy(const Topology& mesh, const State& state, const Parameters& parameters) {
+double bending_energy(const Topology& mesh, const Parameters& parameters, View<const Vec3r> x) {
   if (!mesh.bends) return 0;
   if (parameters.bending_model == BendingModel::plate)
     return reduce("statistics.bending", mesh.cloth_faces, 0.0,
                   PlateEnergy{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
-                              mesh.face_fabric.view(), mesh.fabric.view(), state.x1.view()},
+                              mesh.face_fabric.view(), mesh.fabric.view(), x},
                   Sum{});
   return reduce("statistics.bending", mesh.hinge_count, 0.0,
-                BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), state.x1.view()}, Sum{});
+                BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), x}, Sum{});
 }
 
 struct VertexEnergy {
@@ -146,23 +146,32 @@ struct CountInfinite {
 
 }  // namespace
 
-void report_state(const Topology& mesh, const State& state, const Parameters& parameters,
-                  StepReport& report) {
+StateFigures figures_of(const Topology& mesh, const Parameters& parameters, View<const Real> mass,
+                        View<const Vec3r> x, View<const Vec3r> v) {
   const FaceEnergy faces =
       reduce("statistics.membrane", mesh.cloth_faces, FaceEnergy{0, 0},
              MembraneEnergy{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
-                            mesh.face_fabric.view(), mesh.fabric.view(), state.x1.view()},
+                            mesh.face_fabric.view(), mesh.fabric.view(), x},
              CombineFaces{});
-  const double bending = bending_energy(mesh, state, parameters);
+  const double bending = bending_energy(mesh, parameters, x);
   const Vec3d gravity{parameters.gravity_x, parameters.gravity_y, parameters.gravity_z};
-  const VertexEnergy motion = reduce(
-      "statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},
-      MotionEnergy{state.x1.view(), state.v.view(), state.mass.view(), gravity}, CombineVertices{});
-  report.elastic_energy = faces.energy + bending;
-  report.max_strain = faces.strain;
-  report.kinetic_energy = motion.kinetic;
-  report.gravity_energy = motion.potential;
-  report.max_speed = std::sqrt(motion.speed2);
+  const VertexEnergy motion =
+      reduce("statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},
+             MotionEnergy{x, v, mass, gravity}, CombineVertices{});
+  return {motion.kinetic, faces.energy + bending, motion.potential, faces.strain,
+          std::sqrt(motion.speed2)};
+}
+
+double report_state(const Topology& mesh, const State& state, const Parameters& parameters,
+                    StepReport& report) {
+  const StateFigures figures =
+      figures_of(mesh, parameters, state.mass.view(), state.x1.view(), state.v.view());
+  report.kinetic_energy = figures.kinetic;
+  report.elastic_energy = figures.elastic;
+  report.gravity_energy = figures.gravity;
+  report.max_strain = figures.strain;
+  report.max_speed = figures.speed;
+  return figures.energy();
 }
 
 std::uint64_t hash_state(const State& state) {

@@ -5,9 +5,22 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Writes energies, largest strain and largest speed of the state (x1, v) to the report.
-void report_state(const Topology& mesh, const State& state, const Parameters& parameters,
-                  StepReport& report);
+/// Figures of a state of the cloth.
+struct StateFigures {
+  double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
+  double strain = 0;                             ///< largest principal stretch − 1
+  double speed = 0;                              ///< largest [m/s]
+
+  double energy() const { return kinetic + elastic + gravity; }
+};
+
+/// Of positions [m] and velocities [m/s] (≥ cloth_vertices).
+StateFigures figures_of(const Topology& mesh, const Parameters& parameters, View<const Real> mass,
+                        View<const Vec3r> x, View<const Vec3r> v);
+
+/// Writes the figures of the state (x1, v) to the report; returns its energy [J].
+double report_state(const Topology& mesh, const State& state, const Parameters& parameters,
+                    StepReport& report);
 
 /// 64-bit hash of the bits of all positions and velocities; does not depend on the thread count.
 std::uint64_t hash_state(const State& state);

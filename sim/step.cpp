@@ -121,7 +121,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
       const double start =
           time_ + report.dt * static_cast<double>(done) / static_cast<double>(whole);
       if (try_substep(report, start, dt, level == levels)) {
-        accept_substep(dt);
+        accept_substep(report, dt);
         ++report.substeps;
         done += whole >> level;
         if (level > travel_level() && done % (whole >> (level - 1)) == 0) --level;
@@ -139,8 +139,11 @@ StepReport Solver::step(std::span<const InputEvent> events) {
       report.step = ++step_index_;
     } else {
       back_to_start();
+      report.momentum_error = 0;
     }
-    report_state(mesh_, state_, parameters_, report);
+    const double energy = report_state(mesh_, state_, parameters_, report);
+    if (report.accepted) report.energy_balance = energy - *energy_ - work_;
+    energy_ = energy;
     report.state_hash = hash_state(state_);
   });
   report.time = time_;
