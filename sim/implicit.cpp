@@ -402,7 +402,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     point.at = at_.view();
     point.ahead = ahead_.view();
   }
-  outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, dv_.view());
+  outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, point, dv_.view());
 }
 
 View<const Vec3r> Implicit::move_freely(const StepContext& step) {
@@ -449,7 +449,7 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
-    lost_momentum_ = solution.lost;
+    lost_force_ = (1 / static_cast<double>(step.dt)) * solution.lost;
     ++step.report.newton_iterations;
     motion.solved = true;
     const Contradiction contradiction =

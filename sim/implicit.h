@@ -29,8 +29,8 @@ class Implicit {
 
   /// Largest tension that the last linearisation missed [N/m].
   double missed_tension() const { return missed_tension_; }
-  /// Sum of the residual of the last solve over the free vertices [N·s].
-  Vec3d lost_momentum() const { return lost_momentum_; }
+  /// What the residual of the last solve is short of the forces, over all free vertices [N].
+  Vec3d lost_force() const { return lost_force_; }
   /// Work of air, hands and contacts on the cloth from x0 to the candidate [J].
   double work() const { return contact_work_ + outer_work_; }
 
@@ -56,7 +56,7 @@ class Implicit {
   Array<Vec3r> free_velocity_;           ///< v', where the rule remembers [m/s] (cloth_vertices)
   Array<Vec3r> at_, ahead_;  ///< of the linearisation, from the second iteration (cloth_vertices)
   double missed_tension_ = 0;
-  Vec3d lost_momentum_;
+  Vec3d lost_force_;
   double contact_work_ = 0, outer_work_ = 0;  ///< [J], the latter of air and hands
   LinearSolver solver_;
 };

@@ -25,6 +25,14 @@ void upload_as(Array<To>& array, const std::vector<From>& from, const Convert& t
 
 Vec3r to_real(Vec3d a) { return convert<Real>(a); }
 
+/// Velocity at the end of the substep as it would be without impact zones.
+struct CandidateVelocity {
+  View<const Vec3r> candidate, x1, v;
+  View<Vec3r> out;
+  Real inverse_dt;
+  ICLOTH_HD void operator()(Index i) const { out[i] = v[i] + inverse_dt * (candidate[i] - x1[i]); }
+};
+
 /// Velocity of an obstacle that moves from x0 to x1.
 struct ObstacleVelocity {
   View<const Vec3r> x0, x1;
@@ -156,8 +164,9 @@ void Solver::begin_substep(double start, double dt) {
 }
 
 void Solver::accept_substep(StepReport& report, double dt) {
-  const double error = norm(implicit_.lost_momentum()) / (free_mass_ * dt);
-  if (free_mass_ > 0) report.momentum_error = std::max(report.momentum_error, error);
+  if (free_mass_ > 0)
+    report.momentum_error =
+        std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
   implicit_.end(state_, proximity_);
   work_ += implicit_.work();
@@ -167,9 +176,9 @@ void Solver::accept_substep(StepReport& report, double dt) {
 /// How much the impact zones changed the energy: that of the end, less that of the candidate [J].
 double Solver::zone_work(double dt) {
   candidate_v_.resize(mesh_.cloth_vertices);
-  for_each("step.velocities", mesh_.cloth_vertices,
-           EndVelocity{state_.x0.view(), state_.candidate.view(), state_.inverse_mass.view(),
-                       candidate_v_.view(), real(1 / dt)});
+  for_each("step.candidate_velocities", mesh_.cloth_vertices,
+           CandidateVelocity{state_.candidate.view(), state_.x1.view(), state_.v.view(),
+                             candidate_v_.view(), real(1 / dt)});
   const auto energy = [&](View<const Vec3r> x, View<const Vec3r> v) {
     return figures_of(mesh_, parameters_, state_.mass.view(), x, v).energy();
   };

@@ -53,12 +53,12 @@ double air_work(const StepContext& step, const Linearization& point, View<const 
                 Sum{});
 }
 
-double hand_work(const StepContext& step, View<const Vec3r> dv) {
+double hand_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv) {
   const State& s = step.state;
   if (!s.has_springs) return 0;
   return reduce("implicit.hand_work", step.mesh.cloth_vertices, 0.0,
                 HandWork{s.spring_stiffness.view(), s.mass.view(), s.inverse_mass.view(),
-                         s.spring_target.view(), s.v.view(), dv, s.x0.view(), s.candidate.view()},
+                         s.spring_target.view(), point.v, dv, s.x0.view(), s.candidate.view()},
                 Sum{});
 }
 

@@ -14,6 +14,6 @@ Wind wind_of(const Parameters& parameters);
 double air_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv);
 
 /// Likewise of the springs of the hands, their damping included [J]. 0 without hands.
-double hand_work(const StepContext& step, View<const Vec3r> dv);
+double hand_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv);
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -71,6 +71,9 @@ void draw_transport(PanelContext& context);
 void draw_stage_plot(PanelContext& context);
 void draw_parameters(PanelContext& context);
 void draw_statistics(PanelContext& context);
+/// One line about the errors of the newest step, and the rows of a table about those of a step.
+void draw_estimates_line(const PanelContext& context);
+void draw_estimates(const StepReport& report, const Parameters& parameters);
 /// Hint line and status line along the bottom; the penetration counter is always there.
 void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place);
 /// Says why nothing goes on, over the top of the view; nothing when all is well.

@@ -81,7 +81,6 @@ void draw_counts(const StepReport& r) {
   row("substeps, retries", "%lld, %lld", static_cast<Count>(r.substeps),
       static_cast<Count>(r.retries));
   row("CG iterations", "%lld", static_cast<Count>(r.cg_iterations));
-  row("CG residual", "%.2e", r.cg_residual);
 }
 
 void draw_quantities(const StepReport& r) {
@@ -140,6 +139,7 @@ void draw_stage_plot(PanelContext& context) {
   ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text).x -
                   ImGui::GetStyle().WindowPadding.x);
   ImGui::TextDisabled("%s", text);
+  draw_estimates_line(context);
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 76 * context.scale};
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::InvisibleButton("##stages", size);
@@ -174,6 +174,12 @@ void draw_statistics(PanelContext& context) {
     if (ImGui::SmallButton("newest")) context.ui.chosen_step = -1;
   }
   const ImGuiTableFlags flags = ImGuiTableFlags_RowBg;
+  ImGui::TextUnformatted("Error estimates");
+  if (ImGui::BeginTable("##estimates", 2, flags)) {
+    draw_estimates(*report, context.state.parameters);
+    ImGui::EndTable();
+  }
+  ImGui::TextUnformatted("Counts and quantities");
   if (ImGui::BeginTable("##figures", 2, flags)) {
     draw_counts(*report);
     draw_quantities(*report);
@@ -182,6 +188,9 @@ void draw_statistics(PanelContext& context) {
   ImGui::Spacing();
   draw_log_line(
       context, "CG residual", [](const StepReport& r) { return r.cg_residual; }, colour::kAccent);
+  draw_log_line(
+      context, "momentum error [m/s²]", [](const StepReport& r) { return r.momentum_error; },
+      colour::kBad);
   draw_log_line(
       context, "zone iterations",
       [](const StepReport& r) { return static_cast<double>(r.zone_iterations); }, colour::kChanged);

@@ -1,0 +1,106 @@
+#include "app/estimates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+
+namespace icloth {
+namespace {
+
+/// |gravity| [m/s²].
+double gravity_of(const Parameters& p) { return std::hypot(p.gravity_x, p.gravity_y, p.gravity_z); }
+
+std::string momentum_in_g(const StepReport& report, const Parameters& p) {
+  return short_number(report.momentum_error / gravity_of(p));
+}
+
+std::string momentum_value(const StepReport& report, const Parameters& p) {
+  const std::string value = short_number(report.momentum_error) + " m/s²";
+  if (!(gravity_of(p) > 0)) return value;
+  return value + ", " + short_number(100 * report.momentum_error / gravity_of(p)) + " % of g";
+}
+
+double power_of(const StepReport& report) {
+  return report.dt > 0 ? report.energy_balance / report.dt : 0;
+}
+
+std::string power_value(double watts) {
+  const std::string text = signed_power(watts);
+  return text + (watts < 0 ? " (lost)" : watts > 0 ? " (made)" : "");
+}
+
+std::string percent(double share) { return short_number(100 * share) + " %"; }
+
+/// How deep the closest pair is inside the thickness h, 0 … 1.
+double gap_violation(const StepReport& report, const Parameters& p) {
+  return p.thickness > 0 ? std::clamp(1 - report.min_gap / p.thickness, 0.0, 1.0) : 0;
+}
+
+double zone_violation(const StepReport& report, const Parameters& p) {
+  return p.offset > 0 ? report.zone_violation / p.offset : 0;
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  if (value == 0) return "0";
+  const double size = std::fabs(value);
+  char text[40];
+  if (size >= 0.01 && size < 9.95) {
+    std::snprintf(text, sizeof text, "%.2g", value);
+    return text;
+  }
+  if (size >= 9.95 && size < 9999.5) {
+    std::snprintf(text, sizeof text, "%.0f", value);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "%.0e", value);
+  std::string out = text;
+  const std::size_t e = out.find('e');  // 4e-04 → 4e-4
+  if (e == std::string::npos) return out;
+  out.erase(e + 2, std::min(out.find_first_not_of('0', e + 2), out.size() - 1) - (e + 2));
+  if (out[e + 1] == '+') out.erase(e + 1, 1);
+  return out;
+}
+
+std::string signed_power(double watts) {
+  constexpr struct {
+    double size;
+    const char* name;
+  } kUnits[] = {{1, "W"}, {1e-3, "mW"}, {1e-6, "μW"}, {1e-9, "nW"}};
+  const double size = std::fabs(watts);
+  if (size < 0.5e-9) return "0 W";  // rounding of any scene
+  const auto* unit = std::find_if(std::begin(kUnits), std::end(kUnits) - 1,
+                                  [&](const auto& u) { return size >= u.size; });
+  return (watts < 0 ? "−" : "+") + short_number(size / unit->size) + " " + unit->name;
+}
+
+std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
+  if (!report.accepted) return {};
+  return {
+      {"CG residual", short_number(report.cg_residual),
+       "How much of the right-hand side the linear solves left over, at most."},
+      {"momentum error", momentum_value(report, p),
+       "Force per mass that a linear solve which stops early makes or loses: it pushes the whole "
+       "cloth."},
+      {"energy balance", power_value(power_of(report)),
+       "Energy lost to damping, of the fabric and of the integrator, or made from nothing: its "
+       "change, less the work of air, hands, contacts and impact zones."},
+      {"gap violation", percent(gap_violation(report, p)) + " of the thickness",
+       "How deep the closest pair was inside the thickness that the repulsion keeps, at the start "
+       "of the step."},
+      {"zone violation", percent(zone_violation(report, p)) + " of the offset",
+       "What the worst impact zone missed of the gap that it had to leave."},
+  };
+}
+
+std::string estimates_in_short(const StepReport& report, const Parameters& p) {
+  if (!report.accepted) return {};
+  std::string text = "residual " + short_number(report.cg_residual);
+  if (gravity_of(p) > 0) text += " · momentum " + momentum_in_g(report, p) + " g";
+  return text + " · " + signed_power(power_of(report)) + " · gap " +
+         percent(gap_violation(report, p));
+}
+
+}  // namespace icloth

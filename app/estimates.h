@@ -1,0 +1,31 @@
+// The errors of a step in words and figures, as the panels show them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/parameters.h"
+#include "sim/report.h"
+
+namespace icloth {
+
+struct Estimate {
+  const char* name;
+  std::string value;    ///< with its unit
+  const char* meaning;  ///< one sentence
+};
+
+/// The figures of one step with what they mean; none of a refused step, which has none.
+std::vector<Estimate> estimates(const StepReport& report, const Parameters& parameters);
+
+/// The same in half a line: "residual 4e-4 · momentum 1e-5 g · −0.3 mW · gap 12 %"; empty of a
+/// refused step.
+std::string estimates_in_short(const StepReport& report, const Parameters& parameters);
+
+/// Two digits with a short exponent: 4e-4, 0.012, 3.1.
+std::string short_number(double value);
+
+/// Of energy that a step lost or made: "−0.3 mW", "+12 μW".
+std::string signed_power(double watts);
+
+}  // namespace icloth
