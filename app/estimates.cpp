@@ -12,7 +12,8 @@ namespace {
 double gravity_of(const Parameters& p) { return std::hypot(p.gravity_x, p.gravity_y, p.gravity_z); }
 
 std::string momentum_in_g(const StepReport& report, const Parameters& p) {
-  return short_number(report.momentum_error / gravity_of(p));
+  const double share = report.momentum_error / gravity_of(p);
+  return short_number(share < 1e-9 ? 0 : share);
 }
 
 std::string momentum_value(const StepReport& report, const Parameters& p) {
@@ -97,7 +98,7 @@ std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
 
 std::string estimates_in_short(const StepReport& report, const Parameters& p) {
   if (!report.accepted) return {};
-  std::string text = "residual " + short_number(report.cg_residual);
+  std::string text = "CG " + short_number(report.cg_residual);
   if (gravity_of(p) > 0) text += " · momentum " + momentum_in_g(report, p) + " g";
   return text + " · " + signed_power(power_of(report)) + " · gap " +
          percent(gap_violation(report, p));

@@ -18,8 +18,8 @@ struct Estimate {
 /// The figures of one step with what they mean; none of a refused step, which has none.
 std::vector<Estimate> estimates(const StepReport& report, const Parameters& parameters);
 
-/// The same in half a line: "residual 4e-4 · momentum 1e-5 g · −0.3 mW · gap 12 %"; empty of a
-/// refused step.
+/// The same in one line of the side panel: "CG 4e-4 · momentum 1e-5 g · −0.3 mW · gap 12 %"; empty
+/// of a refused step.
 std::string estimates_in_short(const StepReport& report, const Parameters& parameters);
 
 /// Two digits with a short exponent: 4e-4, 0.012, 3.1.

@@ -60,20 +60,22 @@ TEST(EstimateText, SaysWhatAStepGotWrong) {
   EXPECT_EQ(value_of(list, "gap violation"), "12 % of the thickness");
   EXPECT_EQ(value_of(list, "zone violation"), "1 % of the offset");
   EXPECT_EQ(estimates_in_short(some_report(), some_parameters()),
-            "residual 4e-4 · momentum 1e-5 g · −300 μW · gap 12 %");
+            "CG 4e-4 · momentum 1e-5 g · −300 μW · gap 12 %");
 }
 
 TEST(EstimateText, WithoutGravityThereIsNothingToCompareWith) {
   Parameters p = some_parameters();
   p.gravity_y = 0;
   EXPECT_EQ(value_of(estimates(some_report(), p), "momentum error"), "1e-4 m/s²");
-  EXPECT_EQ(estimates_in_short(some_report(), p), "residual 4e-4 · −300 μW · gap 12 %");
+  EXPECT_EQ(estimates_in_short(some_report(), p), "CG 4e-4 · −300 μW · gap 12 %");
 }
 
-TEST(EstimateText, EnergyFromNothingIsCalledMade) {
+TEST(EstimateText, EnergyFromNothingIsCalledMadeAndRoundingZero) {
   StepReport r = some_report();
   r.energy_balance = 4e-5;
   EXPECT_EQ(value_of(estimates(r, some_parameters()), "energy balance"), "+4 mW (made)");
+  r.momentum_error = 1e-12;
+  EXPECT_EQ(estimates_in_short(r, some_parameters()), "CG 4e-4 · momentum 0 g · +4 mW · gap 12 %");
 }
 
 TEST(EstimateText, ARefusedStepHasNone) {
