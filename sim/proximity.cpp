@@ -15,6 +15,20 @@ struct ContactMaker {
   Real thickness, slack, reach, dt;
   Vec3r fall_speed;  ///< gravity · dt [m/s]
   Real friction_cloth, friction_obstacle;
+  View<const Real> own_friction;  ///< −1: none (objects), empty: none has one
+
+  /// Corners 0 and 2 are of the two elements, VF or EE; an obstacle's, if any, may be either.
+  ICLOTH_HD Real coefficient(const Stencil& s, bool on_obstacle) const {
+    const Real usual = on_obstacle ? friction_obstacle : friction_cloth;
+    if (own_friction.size() == 0) return usual;
+    const Real first = own_friction[object[s.v[0]]], second = own_friction[object[s.v[2]]];
+    if (on_obstacle) {
+      const Real own = s.v[0] >= cloth_vertices ? first : second;
+      return own >= 0 ? own : usual;
+    }
+    if (first >= 0 && second >= 0) return std::sqrt(first * second);
+    return first >= 0 ? first : (second >= 0 ? second : usual);
+  }
 
   ICLOTH_HD bool boxes_apart(const Index* p, int np, const Index* q, int nq) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +88,7 @@ struct ContactMaker {
     c.thickness = thickness;
     c.held = Vec3r{};
     c.stuck = 0;
-    c.friction = touches_obstacle ? friction_obstacle : friction_cloth;
+    c.friction = coefficient(c.s, touches_obstacle);
     return true;
   }
 };
@@ -238,7 +252,7 @@ void Proximity::ramp_thickness(const StepContext& step) {
 
 void Proximity::keep_friction(const State& state, const Parameters& parameters, Real dt) {
   held_.resize(0);
-  if (!(parameters.friction_cloth > 0 || parameters.friction_obstacle > 0)) return;
+  if (!rubs_) return;
   const ContactLaw law{static_cast<Real>(parameters.repulsion_stiffness), dt};
   collect("proximity.keep_friction", contacts_.size(),
           KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, held_);
@@ -252,6 +266,7 @@ void Proximity::recall_friction() {
 
 void Proximity::clear(StepContext& step) {
   contacts_.resize(0);
+  rubs_ = false;
   slots_.resize(0);
   incidence_.build(slots_.view(), step.mesh.cloth_vertices);
 }
@@ -272,7 +287,9 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
                            step.dt,
                            step.dt * step.gravity(),
                            static_cast<Real>(step.parameters.friction_cloth),
-                           static_cast<Real>(step.parameters.friction_obstacle)};
+                           static_cast<Real>(step.parameters.friction_obstacle),
+                           mesh.object_friction.view()};
+  rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
   collect("proximity.vertex_face", vf.size(),

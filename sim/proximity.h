@@ -42,6 +42,7 @@ class Proximity {
   Array<Int4> slots_;
   Incidence incidence_;
   Array<HeldForce> held_;  ///< of pairs with friction, keep_friction
+  bool rubs_ = false;      ///< some contacts may have friction, find
   /// Smallest gap of each vertex in the start state, at most h [m] (cloth_vertices); empty when
   /// nothing starts closer than h. note_start_gaps
   Array<Real> start_gap_;

@@ -18,6 +18,9 @@ struct Cloth {
   Material material;
   bool flat_angles = false;  ///< rest angles are 0, whatever folds the rest shape has
   std::vector<Index> pins;   ///< vertices held where they start
+  /// Coulomb coefficient of the cloth on itself and on other cloths, in place of the parameter
+  /// proximity.friction_cloth; between two cloths that have one, the geometric mean.
+  std::optional<double> friction;
 };
 
 /// Rigid pose at a time; between keyframes translation and rotation vector are interpolated.
@@ -33,6 +36,8 @@ struct Obstacle {
   std::vector<Keyframe> motion;            ///< sorted by time; empty: static
   std::vector<std::vector<Vec3f>> frames;  ///< point cache, (frames)(V) [m]; empty: none
   double frame_rate = 25;                  ///< of the point cache [1/s]
+  /// Coulomb coefficient of cloth on it, in place of the parameter proximity.friction_obstacle.
+  std::optional<double> friction;
 
   bool moves() const { return motion.size() > 1 || frames.size() > 1; }
   /// Vertex positions at a time [s]; written to out (V).

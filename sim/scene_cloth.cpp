@@ -158,6 +158,7 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
     if (angles != "mesh" && angles != "flat") object["rest_angles"].refuse("\"mesh\" or \"flat\"");
     loaded.cloth.flat_angles = angles == "flat";
   }
+  loaded.cloth.friction = parse_friction(object);
   refuse_feature(object, "seams", "use one mesh whose panels share vertices");
   object.finish();
   return loaded;

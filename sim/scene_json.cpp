@@ -125,6 +125,11 @@ void parse_settings(JsonObject& object, Scene& scene) {
 
 }  // namespace
 
+std::optional<double> parse_friction(JsonObject& object) {
+  if (!object.has("friction")) return std::nullopt;
+  return object["friction"].number({0, 2});
+}
+
 void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead) {
   if (object.has(key)) object[key].refuse("no such key, it is not supported yet: " + instead);
 }

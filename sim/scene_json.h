@@ -45,6 +45,9 @@ GridShape parse_grid(JsonValue value, Index triangles);
 TriangleMesh parse_body_shape(JsonValue value, Index most_triangles);
 
 /// Refuses a key of the format that this version does not act on.
+/// Coulomb coefficient of an object, from 0 to 2; none where it has no "friction".
+std::optional<double> parse_friction(JsonObject& object);
+
 void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead);
 
 /// Sum of the wanted triangles of all grids; ill-formed entries count as none.

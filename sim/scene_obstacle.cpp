@@ -53,7 +53,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
   obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);
-  refuse_feature(object, "friction", "see parameters: proximity.friction_obstacle");
+  obstacle.friction = parse_friction(object);
   refuse_feature(object, "thickness", "see parameters: proximity.thickness");
   object.finish();
   return obstacle;

@@ -86,6 +86,13 @@ void Topology::upload(const World& world) {
     return Inverse{{real(m[0]), real(m[1]), real(m[2]), real(m[3])}};
   });
   object.upload(world.object);
+  const bool own_friction =
+      std::any_of(world.objects.begin(), world.objects.end(),
+                  [](const WorldObject& o) { return o.friction.has_value(); });
+  object_friction.resize(0);
+  if (own_friction)
+    upload_as(object_friction, world.objects,
+              [](const WorldObject& o) { return real(o.friction.value_or(-1)); });
   face_fabric.upload(world.face_material);
   upload_as(hinge, world.hinges, [&](const Hinge& h) {
     const auto fabric_of = [&](Index f) {

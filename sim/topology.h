@@ -34,6 +34,9 @@ struct Topology {
   /// What Fabric::table points into; empty without material.evaluation=table.
   Array<Stiffness> stiffness_table;
 
+  /// Own Coulomb coefficient of each object, −1: none (objects); empty where none has one.
+  Array<Real> object_friction;
+
   struct Inverse {
     Real m[4];
   };

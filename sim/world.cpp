@@ -137,14 +137,16 @@ std::vector<HalfEdge> sorted_half_edges(const World& world, const WorldObject& o
 }
 
 void append_object(World& world, const std::string& name, bool cloth, std::size_t source,
-                   const TriangleMesh& mesh, const std::vector<Vec3d>& positions) {
+                   const TriangleMesh& mesh, const std::vector<Vec3d>& positions,
+                   std::optional<double> friction) {
   WorldObject object{name,
                      cloth,
                      static_cast<Index>(source),
                      world.vertices,
                      static_cast<Index>(positions.size()),
                      world.faces,
-                     static_cast<Index>(mesh.faces.size())};
+                     static_cast<Index>(mesh.faces.size()),
+                     friction};
   world.position.insert(world.position.end(), positions.begin(), positions.end());
   world.object.resize(world.position.size(), static_cast<Index>(world.objects.size()));
   for (const Triangle& t : mesh.faces)
@@ -254,7 +256,7 @@ World make_world(const Scene& scene) {
     const Cloth& cloth = scene.cloths[c];
     check_cloth(cloth);
     const std::vector<Corners> corners = material_corners(cloth);
-    append_object(world, cloth.name, true, c, cloth.mesh, cloth.mesh.positions);
+    append_object(world, cloth.name, true, c, cloth.mesh, cloth.mesh.positions, cloth.friction);
     append_rest_state(world, cloth, corners);
     append_edges(world, world.objects.back(), &cloth, corners);
   }
@@ -266,7 +268,7 @@ World make_world(const Scene& scene) {
     const Obstacle& obstacle = scene.obstacles[o];
     obstacle.pose(0.0, pose);
     check_finite("obstacle '" + obstacle.name + "'", pose);
-    append_object(world, obstacle.name, false, o, obstacle.mesh, pose);
+    append_object(world, obstacle.name, false, o, obstacle.mesh, pose, obstacle.friction);
     append_edges(world, world.objects.back(), nullptr, {});
   }
   world.median_edge = median_edge_length(world);

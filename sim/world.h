@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct WorldObject {
   Index source = 0;  ///< index in scene.cloths or scene.obstacles
   Index first_vertex = 0, vertex_count = 0;
   Index first_face = 0, face_count = 0;
+  std::optional<double> friction;  ///< its own Coulomb coefficient
 };
 
 /// Interior edge of a cloth with its two flaps; see bending.h for the roles of the vertices.

@@ -9,6 +9,7 @@
 
 #include "sim/intersections.h"
 #include "sim/material_io.h"
+#include "sim/world.h"
 #include "tests/temporary_folder.h"
 
 namespace icloth {
@@ -221,6 +222,24 @@ TEST(SceneIo, BodiesFollowMddPointCachesAtTheirRate) {
   EXPECT_EQ(out[1], (Vec3d{3, 0, 0}));
   const auto slower = load(folder.write("b.json", start + R"(, "frame_rate": 2}]})"));
   EXPECT_EQ(slower->obstacles.at(0).frame_rate, 2);
+}
+
+TEST(SceneIo, ObjectsMayHaveTheirOwnFriction) {
+  const TemporaryFolder folder;
+  const std::string grid = R"({"mesh": {"grid": {"size": [1, 1]}}, "triangles": 8)";
+  const std::string ball = R"({"mesh": {"sphere": {"radius": 0.1, "triangles": 80}})";
+  const auto scene = load(folder.write("a.json", R"({"cloths": [)" + grid +
+                                                     R"(, "friction": 0.2}, )" + grid + R"(}],
+      "obstacles": [)" + ball + R"(, "friction": 0}, )" +
+                                                     ball + "}]}"));
+  EXPECT_EQ(scene->cloths[0].friction, 0.2);
+  EXPECT_EQ(scene->cloths[1].friction, std::nullopt);
+  EXPECT_EQ(scene->obstacles[0].friction, 0.0);
+  EXPECT_EQ(scene->obstacles[1].friction, std::nullopt);
+  const World world = make_world(*scene);
+  EXPECT_EQ(world.objects[0].friction, 0.2);
+  EXPECT_EQ(world.objects[2].friction, 0.0);
+  EXPECT_EQ(world.objects[3].friction, std::nullopt);
 }
 
 TEST(SceneIo, PointCacheIsInterpolated) {

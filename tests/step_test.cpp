@@ -1,9 +1,11 @@
 // Whole steps through the public interface.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "sim/intersections.h"
 #include "sim/simulator.h"
@@ -300,6 +302,52 @@ TEST_P(Builds, FrictionHoldsOnASlope) {
   EXPECT_LT(slide(make(scene_with(0.6))), 0.002);
   // Coulomb's law alone gives ½ (g sin α − μ g cos α) t² = 0.23 m, from rest.
   EXPECT_GT(slide(make(scene_with(0.1))), 0.1);
+}
+
+/// Three sheets side by side on slopes of tan α = 0.3, each with its own friction or none.
+std::shared_ptr<Scene> slopes(const std::array<std::optional<double>, 3>& friction) {
+  auto scene = new_scene();
+  const double angle = std::atan(0.3), c = std::cos(angle), s = std::sin(angle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double z = 0.4 * static_cast<double>(k);
+    scene->cloths.push_back(make_sheet(lying(0.15, 60), {0, 0.011, z}));
+    scene->obstacles.push_back(make_obstacle(make_box({0.8, 0.02, 0.3}, 0.1), {0, 0, z}));
+    scene->obstacles[k].friction = friction[k];
+    for (auto* mesh : {&scene->cloths[k].mesh, &scene->obstacles[k].mesh})
+      for (Vec3d& p : mesh->positions) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  }
+  return scene;
+}
+
+/// How far each sheet goes in the steps [m].
+std::array<double, 3> ways(Simulator& simulator, int steps) {
+  const std::size_t each = simulator.scene().cloths[0].mesh.positions.size();
+  const std::vector<Vec3d> start = simulator.snapshot().positions;
+  for (int k = 0; k < steps; ++k) EXPECT_TRUE(simulator.step({}).accepted);
+  const std::vector<Vec3d> end = simulator.snapshot().positions;
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3 * each; ++i)
+    out[i / each] += norm(end[i] - start[i]) / static_cast<double>(each);
+  return out;
+}
+
+TEST_P(Builds, EveryBodyHasItsOwnFriction) {
+  auto scene = slopes({0.6, 0.1, std::nullopt});
+  scene->parameters.friction_cloth = 0;
+  scene->parameters.friction_obstacle = 0.6;
+  const auto simulator = make(scene);
+  ways(*simulator, 10);  // they lie down
+  const auto first = ways(*simulator, 30);
+  EXPECT_LT(first[0], 0.002);
+  EXPECT_GT(first[1], 0.03);
+  EXPECT_LT(first[2], 0.002);
+  Parameters smooth = simulator->parameters();
+  smooth.friction_obstacle = 0;  // of the third body alone
+  simulator->set_parameters(smooth);
+  const auto second = ways(*simulator, 30);
+  EXPECT_LT(second[0], 0.002);
+  EXPECT_GT(second[1], 0.05);
+  EXPECT_GT(second[2], 0.05);
 }
 
 /// A refused step keeps the state before it bit for bit, and says why.
