@@ -86,8 +86,8 @@ std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
        "Force per mass that a linear solve which stops early makes or loses: it pushes the whole "
        "cloth."},
       {"energy balance", power_value(power_of(report)),
-       "Energy lost to damping, of the fabric and of the integrator, or made from nothing: its "
-       "change, less the work of air, hands, contacts and impact zones."},
+       "Energy lost to damping, of the fabric and of the integrator, or made from nothing, as by "
+       "measured fabrics while their stiffness changes with the strain."},
       {"gap violation", percent(gap_violation(report, p)) + " of the thickness",
        "How deep the closest pair was inside the thickness that the repulsion keeps, at the start "
        "of the step."},
