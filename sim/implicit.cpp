@@ -449,7 +449,7 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
-    lost_force_ = (1 / static_cast<double>(step.dt)) * solution.lost;
+    lost_force_ = (1 / static_cast<double>(rule_.h)) * solution.lost;
     ++step.report.newton_iterations;
     motion.solved = true;
     const Contradiction contradiction =

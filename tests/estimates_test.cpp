@@ -98,6 +98,21 @@ TEST(EnergyBalance, OfFreeFallIsTheLossOfBackwardEuler) {
   EXPECT_NEAR(run.step().energy_balance, -2 * loss, 1e-9 * loss);
 }
 
+TEST(EnergyBalance, OfFreeFallIsNothingInSecondOrder) {
+  auto scene = sheet_scene(lying(0.3, 200));
+  scene->parameters.integrator = Integrator::bdf2;
+  Watched run(scene);
+  const Parameters& p = run.simulator().parameters();
+  const double loss = 0.5 * run.mass() * std::pow(p.time_step * p.gravity_y, 2);
+  EXPECT_NEAR(run.step().energy_balance, -loss, 1e-9 * loss);  // starts by backward Euler
+  for (int k = 0; k < 30; ++k) {
+    const StepReport& report = run.step();
+    ASSERT_EQ(report.substeps, 1);
+    EXPECT_LT(std::fabs(report.energy_balance), k < 10 ? loss : 1e-3 * loss) << k;
+    EXPECT_LT(report.momentum_error, 1e-9);
+  }
+}
+
 TEST(EnergyBalance, OfSubstepsAddsUp) {
   auto scene = sheet_scene(lying(0.3, 200));
   scene->parameters.max_travel = 0.5;  // of an edge: fast cloth takes several substeps
