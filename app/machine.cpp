@@ -3,7 +3,6 @@
 #include <icloth_commit.h>
 #include <sys/resource.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "kernels/over_ranges.h"
 #include "sim/cuda_devices.h"
 
 namespace icloth {
@@ -60,8 +60,10 @@ double measure_memory_bandwidth() {
   double best = 0;
   for (int run = 0; run < 6; ++run) {  // the first one brings in the pages
     const auto start = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, count / block, [&](std::size_t k) {
-      for (std::size_t i = k * block; i < (k + 1) * block; ++i) a[i] = b[i] + 3.0 * c[i];
+    over_ranges(Index{count / block}, 2, 1, [&](Index first, Index last) {
+      for (std::size_t i = block * static_cast<std::size_t>(first);
+           i < block * static_cast<std::size_t>(last); ++i)
+        a[i] = b[i] + 3.0 * c[i];
     });
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     best = std::max(best, 3.0 * sizeof(double) * count / time.count());

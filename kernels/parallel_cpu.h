@@ -3,10 +3,7 @@
 // Few elements are done by the calling thread: handing work over costs about a microsecond.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
-#include <tbb/task_arena.h>
 
 #include <cstring>
 #include <limits>
@@ -16,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/task_fence.h"
+#include "kernels/over_ranges.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
@@ -37,24 +34,6 @@ View<T> scratch(Index n) {
 }
 
 inline Index chunk_count(Index n, Index chunk) { return n / chunk + (n % chunk != 0 ? 1 : 0); }
-
-/// body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is small.
-/// Isolated: while this thread waits it must not start other work that would use its scratch.
-template <class Body>
-void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
-  if (n <= 0) return;
-  if (n < serial_below) return body(Index{0}, n);
-  TaskFence fence;
-  const auto task = [&body, &fence](const tbb::blocked_range<Index>& r) {
-    fence.task_begins();
-    body(r.begin(), r.end());
-    fence.task_ends();
-  };
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)), task);
-  });
-  fence.all_waited_for();
-}
 
 /// body(chunk, first, last) for chunks of fixed size.
 template <class Body>
@@ -181,7 +160,7 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
 template <class F>
 void for_each_team(const char* name, Index teams, const F& f) {
   const ProfileScope scope(name);
-  detail::over_ranges(teams, 2, 1, [&f](Index first, Index last) {
+  over_ranges(teams, 2, 1, [&f](Index first, Index last) {
     for (Index t = first; t < last; ++t) {
       Team team;
       f(team, t);

@@ -1,7 +1,5 @@
 #include "sim/intersections.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "kernels/over_ranges.h"
 #include "sim/exact_triangles.h"
 
 #if defined(ICLOTH_HAS_CGAL)
@@ -163,7 +162,7 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
 
   std::vector<IntersectingFaces> found;
   std::mutex lock;  // the order of arrival is undone by the sort below
-  tbb::parallel_for(Index{0}, static_cast<Index>(faces.size()), [&](Index a) {
+  const auto test_face = [&](Index a) {
     if (is_obstacle(a)) return;
     tree.visit(boxes[at(a)], [&](Index b) {
       if (b <= a && !is_obstacle(b)) return;  // found from the other side
@@ -172,6 +171,9 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
       const std::lock_guard guard(lock);
       found.push_back({std::min(a, b), std::max(a, b)});
     });
+  };
+  over_ranges(static_cast<Index>(faces.size()), 64, 64, [&](Index first, Index last) {
+    for (Index a = first; a < last; ++a) test_face(a);
   });
   std::ranges::sort(found, [](const IntersectingFaces& s, const IntersectingFaces& t) {
     return s.a != t.a ? s.a < t.a : s.b < t.b;

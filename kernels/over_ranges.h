@@ -1,0 +1,31 @@
+// Parallel loops of the host, on which the CPU builds' primitives stand.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "kernels/platform.h"
+#include "kernels/task_fence.h"
+
+namespace icloth {
+
+/// body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is small.
+/// Isolated: while this thread waits it must not start other work that would use its scratch.
+template <class Body>
+void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
+  if (n <= 0) return;
+  if (n < serial_below) return body(Index{0}, n);
+  TaskFence fence;
+  const auto task = [&body, &fence](const tbb::blocked_range<Index>& r) {
+    fence.task_begins();
+    body(r.begin(), r.end());
+    fence.task_ends();
+  };
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)), task);
+  });
+  fence.all_waited_for();
+}
+
+}  // namespace icloth
