@@ -42,19 +42,44 @@ struct CoarseBlocks {
   }
 };
 
-/// Completes the diagonal block of a node: the mass that CoarseBlocks has scaled with the rest, and
-/// what the contacts add.
+/// Completes the diagonal block of a node but for contacts: CoarseBlocks has scaled the mass with
+/// the rest.
+struct AddMass {
+  View<const Index> child_first, child;
+  View<const Real> inverse_mass;  ///< of the vertices on the finest level, else empty
+  View<const Index> row_first;
+  View<Mat3r> value, diagonal;
+  View<Real> mass;
+  Index first;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index i = first + k;
+    Real sum = 0;
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += mass_of(child[c]);
+    Mat3r& block = value[row_first[i]];
+    block += Mat3r::identity((1 - 1 / kOverestimate) * sum);
+    diagonal[i] = block;
+    mass[i] = sum;
+  }
+
+  ICLOTH_HD Real mass_of(Index c) const {
+    if (inverse_mass.size() == 0) return mass[c];
+    return inverse_mass[c] > 0 ? 1 / inverse_mass[c] : Real(0);
+  }
+};
+
 struct FinishNode {
   View<const Index> row_first;
-  View<Mat3r> value;
-  View<Real> mass;
-  View<Mat3r> smoother;
+  View<const Real> mass;
+  View<const Mat3r> diagonal;
+  View<Mat3r> value, contact, smoother;
 
-  ICLOTH_HD void operator()(Index i, Real m, const Mat3r& contacts) const {
-    Mat3r& block = value[row_first[i]];
-    block += Mat3r::identity((1 - 1 / kOverestimate) * m) + contacts;
-    mass[i] = m;
-    smoother[i] = m > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
+  ICLOTH_HD void operator()(Index i, const Mat3r& contacts) const {
+    contact[i] = contacts;
+    Mat3r block = diagonal[i];
+    block += contacts;
+    value[row_first[i]] = block;
+    smoother[i] = mass[i] > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
   }
 };
 
@@ -68,21 +93,20 @@ struct FinishFirstLevel {
 
   /// A contact is lumped: |w| H at each of its vertices, which is not less than w wᵀ⊗H of one side.
   ICLOTH_HD void operator()(Index i) const {
-    Real mass = 0;
     Mat3r sum{};
     for (Index c = child_first[i]; c < child_first[i + 1]; ++c) {
       const Index v = child[c];
       if (!(inverse_mass[v] > 0)) continue;
-      mass += 1 / inverse_mass[v];
       for (Index k = contact_first[v]; k < contact_first[v + 1]; ++k) {
         const Index entry = contact_entries[k];
-        const Real w = std::fabs(contacts[entry / 4].s.w[entry % 4]);
-        const Real* h = terms[entry / 4].h;
+        const ContactTerm& t = terms[entry / 4];
+        if (t.active == 0) continue;
+        const Real w = std::fabs(contacts[entry / 4].s.w[entry % 4]), *h = t.h;
         sum += Mat3r{{w * h[0], w * h[1], w * h[2], w * h[1], w * h[3], w * h[4], w * h[2],
                       w * h[4], w * h[5]}};
       }
     }
-    finish(i, mass, sum);
+    finish(i, sum);
   }
 };
 
@@ -93,9 +117,9 @@ struct FinishLevel {
 
   ICLOTH_HD void operator()(Index k) const {
     const Index i = first + k;
-    Real mass = 0;
-    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) mass += finish.mass[child[c]];
-    finish(i, mass, Mat3r{});
+    Mat3r sum{};
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += finish.contact[child[c]];
+    finish(i, (1 / kOverestimate) * sum);
   }
 };
 
@@ -202,13 +226,11 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
   source_first_.upload(layout.source_first);
   source_.upload(layout.source);
   mass_.resize(layout.nodes());
-  smoother_.resize(layout.nodes());
+  for (Array<Mat3r>* a : {&diagonal_, &contact_, &smoother_}) a->resize(layout.nodes());
   for (Array<Vec3r>* a : {&b_, &z_, &t_}) a->resize(layout.nodes() + kPadding);
 }
 
-void Hierarchy::fill(const SystemView& system) {
-  const FinishNode finish{matrix_.row_first.view(), matrix_.value.view(), mass_.view(),
-                          smoother_.view()};
+void Hierarchy::fill_matrix(const SystemView& system) {
   for (int l = 0; l < levels_; ++l) {
     CoarseBlocks sum{vertex_row_.view(),   system.column,        system.entries,
                      system.inverse_mass,  source_first_.view(), source_.view(),
@@ -219,6 +241,17 @@ void Hierarchy::fill(const SystemView& system) {
       sum.live = mass_.view();
     }
     for_each("implicit.coarse_blocks", blocks_[l].count, sum);
+    for_each("implicit.coarse_masses", level_[l].count,
+             AddMass{child_first_.view(), child_.view(),
+                     l == 0 ? system.inverse_mass : View<const Real>{}, matrix_.row_first.view(),
+                     matrix_.value.view(), diagonal_.view(), mass_.view(), level_[l].first});
+  }
+}
+
+void Hierarchy::fill_contacts(const SystemView& system) {
+  const FinishNode finish{matrix_.row_first.view(), mass_.view(),    diagonal_.view(),
+                          matrix_.value.view(),     contact_.view(), smoother_.view()};
+  for (int l = 0; l < levels_; ++l) {
     if (l == 0)
       for_each(
           "implicit.coarse_nodes", level_[l].count,

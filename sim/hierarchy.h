@@ -13,9 +13,10 @@ class Hierarchy {
   /// pattern alone, so vertices can become prescribed and free again.
   void set_up(const std::vector<Index>& row_first, const std::vector<Index>& column);
 
-  /// Sums up the matrices of the levels: (A − M) / kOverestimate + M at each, and the contacts'
-  /// share of the diagonal blocks.
-  void fill(const SystemView& system);
+  /// Sums up the matrices of the levels without contacts: (A − M) / kOverestimate + M at each.
+  void fill_matrix(const SystemView& system);
+  /// Adds the contacts' share of the diagonal blocks, in place of those of the call before.
+  void fill_contacts(const SystemView& system);
 
   /// `inverse_diagonal`: of the finest matrix. Valid until the next call of a member.
   Multilevel view(const SystemView& system, View<const Mat3r> inverse_diagonal);
@@ -36,8 +37,10 @@ class Hierarchy {
   BlockMatrix matrix_;
   /// What adds up to a block of matrix_: 2 × block of the finer level, + 1 where it is transposed.
   Array<Index> source_first_, source_;
-  Array<Real> mass_;       ///< of the free vertices (nodes), fill
-  Array<Mat3r> smoother_;  ///< see Multilevel (nodes), fill
+  Array<Real> mass_;       ///< of the free vertices (nodes), fill_matrix
+  Array<Mat3r> diagonal_;  ///< blocks without contacts (nodes), fill_matrix
+  Array<Mat3r> contact_;   ///< what contacts add to them (nodes), fill_contacts
+  Array<Mat3r> smoother_;  ///< see Multilevel (nodes), fill_contacts
   Array<Vec3r> b_, z_, t_;
 };
 

@@ -445,7 +445,7 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     const LinearSolution solution =
         solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
                       {step.parameters.preconditioner, step.parameters.cg_tolerance,
-                       step.parameters.cg_max_iterations});
+                       step.parameters.cg_max_iterations, pass > 0});
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);

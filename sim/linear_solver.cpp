@@ -183,7 +183,8 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   const double bytes = bytes_per_iteration(system, n);
   LinearSolution coarse;
   if (options.preconditioner == Preconditioner::multilevel) {
-    hierarchy_.fill(system);
+    if (!options.same_matrix) hierarchy_.fill_matrix(system);
+    hierarchy_.fill_contacts(system);
     iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
     coarse = finish();
     coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());

@@ -18,6 +18,7 @@ struct SolveOptions {
   Preconditioner preconditioner;
   double tolerance;  ///< of LinearSolution::residual, whatever the preconditioner
   int max_iterations;
+  bool same_matrix = false;  ///< only contacts and right-hand side differ from the last solve's
 };
 
 class LinearSolver {

@@ -107,7 +107,8 @@ struct ApplyOnce {
 std::vector<Vec3r> preconditioned(Sheets& sheets, const std::vector<Vec3r>& v) {
   Hierarchy hierarchy;
   hierarchy.set_up(sheets.row_first, sheets.column);
-  hierarchy.fill(sheets.system());
+  hierarchy.fill_matrix(sheets.system());
+  hierarchy.fill_contacts(sheets.system());
   Array<Vec3r> from, r(sheets.count), z(sheets.count);
   from.upload(v);
   with_device_team("test", sheets.count,
