@@ -74,7 +74,7 @@ void Commands::add_view() {
       return run_run(run);
     }
     view.scene = view_simulation.scene;
-    view.overrides = view_simulation.overrides;
+    view.overrides = scene_overrides(view_simulation);
     view.threads = view_simulation.threads;
     view.build = choose_build(view_simulation);
     return run_view(view);
@@ -119,7 +119,7 @@ void Commands::add_render() {
       return run_run(run);
     }
     render.scene = common.scene;
-    render.overrides = common.overrides;
+    render.overrides = scene_overrides(common);
     render.threads = common.threads;
     render.quiet = common.quiet;
     render.steps = common.steps;

@@ -77,13 +77,22 @@ void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool sce
   verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
       ->check(check_time)
       ->excludes(steps);
-  verb.add_flag_callback(
-      "--repair-start", [&options] { options.overrides.emplace_back("repair_start=on"); },
-      "separate faces that intersect a little at the start");
+  verb.add_flag("--repair-start", options.repair_start,
+                "separate faces that intersect a little at the start");
+  verb.add_option("--preset", options.preset,
+                  "fast, normal or accurate: settings measured by bench accuracy");
   verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
       ->allow_extra_args(false);
   verb.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");
   verb.add_flag("--quiet", options.quiet, "print errors only");
+}
+
+std::vector<std::string> scene_overrides(const SimulationOptions& options) {
+  std::vector<std::string> overrides;
+  if (!options.preset.empty()) overrides.push_back("preset=" + options.preset);
+  if (options.repair_start) overrides.emplace_back("repair_start=on");
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  return overrides;
 }
 
 Build choose_build(const SimulationOptions& options) {
@@ -114,7 +123,7 @@ std::string command_arguments(const SimulationOptions& options, Build build) {
   std::string text = quoted(options.scene);
   text += build == Build::cuda32 ? " --device cuda" : " --device cpu";
   if (build == Build::cpu64) text += " --precision f64";
-  for (const std::string& override : options.overrides) text += " --set " + quoted(override);
+  for (const std::string& override : scene_overrides(options)) text += " --set " + quoted(override);
   return text;
 }
 

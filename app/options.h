@@ -13,12 +13,14 @@ class App;
 namespace icloth {
 
 struct SimulationOptions {
-  std::string scene = "scarf";         ///< built-in name, scene JSON or mesh file
-  std::string device;                  ///< cpu, cuda or cuda:N; empty: cuda where it is usable
-  std::string precision = "f32";       ///< f32 or f64
-  int threads = 0;                     ///< of the CPU builds; 0: all
-  long steps = -1;                     ///< -1: by time
-  double time = -1;                    ///< [s]; -1 (and steps -1): the scene's duration
+  std::string scene = "scarf";    ///< built-in name, scene JSON or mesh file
+  std::string device;             ///< cpu, cuda or cuda:N; empty: cuda where it is usable
+  std::string precision = "f32";  ///< f32 or f64
+  int threads = 0;                ///< of the CPU builds; 0: all
+  long steps = -1;                ///< -1: by time
+  double time = -1;               ///< [s]; -1 (and steps -1): the scene's duration
+  std::string preset;             ///< name of a preset, sim/presets.h; empty: none
+  bool repair_start = false;
   std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
   bool dump_config = false;            ///< print all parameters and stop
   bool quiet = false;
@@ -29,6 +31,9 @@ void add_device_option(CLI::App& verb, std::string& device);
 
 /// Adds the options to a verb; values are checked while the command line is read.
 void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required);
+
+/// What the options change of the scene, for load_scene: the preset first, then each --set.
+std::vector<std::string> scene_overrides(const SimulationOptions& options);
 
 /// Build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA
 /// device that can be used, `cuda:N` that one; it becomes the one of Build::cuda32

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace icloth {
 
@@ -22,16 +23,29 @@ void ParameterEdits::set(const ParameterInfo& info, double value, bool continued
   if (value == before) return;
   apply(info, value);
   undone_.clear();
-  if (continued && !done_.empty() && done_.back().info == &info) {
-    done_.back().after = value;
+  if (continued && !done_.empty() && done_.back().back().info == &info) {
+    done_.back().back().after = value;
   } else {
-    done_.push_back({&info, before, value});
+    done_.push_back({{&info, before, value}});
   }
+}
+
+void ParameterEdits::set_all(const Parameters& values) {
+  Edit edit;
+  for (const ParameterInfo& info : parameter_table()) {
+    const double before = value(info), after = get_parameter(values, info);
+    if (before == after) continue;
+    apply(info, after);
+    edit.push_back({&info, before, after});
+  }
+  if (edit.empty()) return;
+  undone_.clear();
+  done_.push_back(std::move(edit));
 }
 
 bool ParameterEdits::undo() {
   if (done_.empty()) return false;
-  apply(*done_.back().info, done_.back().before);
+  for (const Change& change : done_.back()) apply(*change.info, change.before);
   undone_.push_back(done_.back());
   done_.pop_back();
   return true;
@@ -39,7 +53,7 @@ bool ParameterEdits::undo() {
 
 bool ParameterEdits::redo() {
   if (undone_.empty()) return false;
-  apply(*undone_.back().info, undone_.back().after);
+  for (const Change& change : undone_.back()) apply(*change.info, change.after);
   done_.push_back(undone_.back());
   undone_.pop_back();
   return true;

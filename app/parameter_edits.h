@@ -22,6 +22,8 @@ class ParameterEdits {
   /// Clamps to the valid range. With `continued` the change belongs to the one before (a slider
   /// that is still held) and is undone together with it.
   void set(const ParameterInfo& info, double value, bool continued = false);
+  /// Takes over all values, each within its range; undone at once.
+  void set_all(const Parameters& values);
   void reset(const ParameterInfo& info) { set(info, start_value(info)); }
   /// False when there is nothing to undo or redo.
   bool undo();
@@ -31,10 +33,11 @@ class ParameterEdits {
   std::vector<std::pair<std::string, double>> take_changes();
 
  private:
-  struct Edit {
+  struct Change {
     const ParameterInfo* info;
     double before, after;
   };
+  using Edit = std::vector<Change>;  ///< undone at once
   void apply(const ParameterInfo& info, double value);
 
   Parameters start_, values_;

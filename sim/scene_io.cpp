@@ -11,6 +11,7 @@
 #include "sim/file_io.h"
 #include "sim/material_io.h"
 #include "sim/mesh_io.h"
+#include "sim/presets.h"
 #include "sim/repair.h"
 #include "sim/scene_json.h"
 
@@ -48,7 +49,10 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
     if (equals == std::string_view::npos || equals == 0)
       throw InputError("--set: value '" + std::string(argument) + "', expected KEY=VALUE");
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
-    if (key == "triangles") {
+    if (key == "preset") {
+      const auto settings = find_preset(value).settings;
+      overrides.parameters.insert(overrides.parameters.end(), settings.begin(), settings.end());
+    } else if (key == "triangles") {
       overrides.triangles = parse_triangles(value, limits.triangles);
     } else if (key == "repair_start") {
       overrides.repair_start = parse_switch(key, value);

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "sim/presets.h"
+
 namespace icloth {
 namespace {
 
@@ -46,6 +48,25 @@ TEST(parameter_edits, one_gesture_is_undone_at_once) {
   EXPECT_TRUE(edits.undo());
   edits.set(row("wind.x"), 3);
   EXPECT_FALSE(edits.redo()) << "a new edit forgets what was undone";
+}
+
+TEST(parameter_edits, a_preset_is_undone_at_once) {
+  ParameterEdits edits{Parameters{}};
+  Parameters wanted = edits.values();
+  apply_preset(wanted, find_preset("fast"));
+  edits.set_all(wanted);
+  EXPECT_TRUE(is_set(edits.values(), find_preset("fast")));
+  EXPECT_FALSE(is_set(edits.values(), find_preset("accurate")));
+  const ParameterInfo& dt = row("step.time_step");
+  EXPECT_NE(edits.value(dt), edits.start_value(dt));
+  EXPECT_TRUE(edits.undo());
+  for (const ParameterInfo& info : parameter_table()) EXPECT_FALSE(edits.changed(info));
+  EXPECT_FALSE(edits.undo());
+  EXPECT_TRUE(edits.redo());
+  EXPECT_TRUE(is_set(edits.values(), find_preset("fast")));
+  edits.set_all(edits.values());
+  EXPECT_TRUE(edits.undo()) << "nothing changed, nothing to undo";
+  EXPECT_FALSE(is_set(edits.values(), find_preset("fast")));
 }
 
 TEST(parameter_edits, hands_over_the_newest_values_in_order) {

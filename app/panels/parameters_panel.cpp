@@ -3,6 +3,7 @@
 
 #include "app/panels/panel.h"
 #include "app/theme.h"
+#include "sim/presets.h"
 
 namespace icloth {
 
@@ -131,9 +132,40 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   ImGui::PopID();
 }
 
+void explain_preset(const Preset& preset) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+  ImGui::TextUnformatted(shown(std::string(preset.figures)).c_str());
+  for (const auto& [key, value] : preset.settings)
+    ImGui::TextDisabled("%s = %s", std::string(key).c_str(), std::string(value).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+/// Buttons that set several parameters at once; the one in force is lit.
+void draw_presets(ParameterEdits& edits) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto count = static_cast<float>(presets().size());
+  const float width = (ImGui::GetContentRegionAvail().x - (count - 1) * gap) / count;
+  for (const Preset& preset : presets()) {
+    if (&preset != &presets().front()) ImGui::SameLine();
+    const bool on = is_set(edits.values(), preset);
+    if (on) ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32(38, 92, 136, 255));
+    const bool pressed = ImGui::Button(std::string(preset.label).c_str(), {width, 0});
+    if (on) ImGui::PopStyleColor();
+    explain_preset(preset);
+    if (!pressed) continue;
+    Parameters wanted = edits.values();
+    apply_preset(wanted, preset);
+    edits.set_all(wanted);
+  }
+}
+
 }  // namespace
 
 void draw_parameters(PanelContext& context) {
+  draw_presets(context.edits);
   const auto table = parameter_table();
   for (std::size_t k = 0; k < table.size();) {
     const std::string group = group_of(table[k]);

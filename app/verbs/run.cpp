@@ -83,7 +83,7 @@ int run_run(const RunOptions& options) {
   const SimulationOptions& common = options.simulation;
   check(options);
   HeadlessJob job;
-  job.scene = load_scene(common.scene, common.overrides);
+  job.scene = load_scene(common.scene, scene_overrides(common));
   if (common.dump_config) {
     std::printf("%s\n", dump_parameters(job.scene->parameters).c_str());
     return 0;
@@ -98,7 +98,7 @@ int run_run(const RunOptions& options) {
   job.steps = whole_input ? static_cast<long>(input.steps.size()) : step_count(common, *job.scene);
   record.scene = common.scene;
   record.build = build_name(job.build);
-  record.overrides = common.overrides;
+  record.overrides = scene_overrides(common);
   if (!options.record_file.empty()) job.record = &record;
   job.stop_on_failure = options.on_failure == "stop";
   job.quiet = common.quiet;

@@ -1,0 +1,56 @@
+#include "sim/presets.h"
+
+#include <algorithm>
+#include <string>
+
+#include "sim/error.h"
+
+namespace icloth {
+namespace {
+
+// Two-step steps lie on the fronts of all scenes; which length and tolerance is a matter of taste.
+constexpr Preset::Setting kFast[] = {{"step.time_step", "0.02"},
+                                     {"implicit.integrator", "bdf2"},
+                                     {"implicit.cg_tolerance", "0.05"},
+                                     {"implicit.newton_iterations", "3"}};
+constexpr Preset::Setting kNormal[] = {{"step.time_step", "0.01"},
+                                       {"implicit.integrator", "bdf2"},
+                                       {"implicit.cg_tolerance", "0.01"},
+                                       {"implicit.newton_iterations", "3"}};
+constexpr Preset::Setting kAccurate[] = {{"step.time_step", "0.0025"},
+                                         {"implicit.integrator", "bdf2"},
+                                         {"implicit.cg_tolerance", "0.001"},
+                                         {"implicit.newton_iterations", "5"}};
+
+constexpr Preset kPresets[] = {
+    {"fast", "Fast", kFast, "FIGURES"},
+    {"normal", "Normal", kNormal, "FIGURES"},
+    {"accurate", "Accurate", kAccurate, "FIGURES"},
+};
+
+}  // namespace
+
+std::span<const Preset> presets() { return kPresets; }
+
+const Preset& find_preset(std::string_view name) {
+  std::string names;
+  for (const Preset& preset : kPresets) {
+    if (preset.name == name) return preset;
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  throw InputError("preset '" + std::string(name) + "', expected one of " + names);
+}
+
+void apply_preset(Parameters& parameters, const Preset& preset) {
+  for (const auto& [key, value] : preset.settings) set_parameter(parameters, key, value);
+}
+
+bool is_set(const Parameters& parameters, const Preset& preset) {
+  Parameters wanted = parameters;
+  apply_preset(wanted, preset);
+  return std::ranges::all_of(parameter_table(), [&](const ParameterInfo& info) {
+    return get_parameter(wanted, info) == get_parameter(parameters, info);
+  });
+}
+
+}  // namespace icloth

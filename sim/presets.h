@@ -1,0 +1,32 @@
+// Settings for users who want speed or accuracy without knowing the parameters: points on the
+// fronts that `icloth bench accuracy` measures.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "sim/parameters.h"
+
+namespace icloth {
+
+struct Preset {
+  using Setting = std::pair<std::string_view, std::string_view>;  ///< parameter, value
+
+  std::string_view name;   ///< "fast"
+  std::string_view label;  ///< "Fast"
+  std::span<const Setting> settings;
+  std::string_view figures;  ///< what was measured, a few lines
+};
+
+/// From the fastest to the most accurate; all set the same parameters.
+std::span<const Preset> presets();
+
+/// Throws InputError that names the presets.
+const Preset& find_preset(std::string_view name);
+
+void apply_preset(Parameters& parameters, const Preset& preset);
+/// Whether the parameters have all of its values.
+bool is_set(const Parameters& parameters, const Preset& preset);
+
+}  // namespace icloth
