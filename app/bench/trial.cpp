@@ -72,7 +72,8 @@ void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
 
 Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
                 int repeats) {
-  std::vector<std::string> all = scene.overrides;
+  std::vector<std::string> all{"triangles=" + std::to_string(scene.triangles)};
+  all.insert(all.end(), scene.overrides.begin(), scene.overrides.end());
   all.insert(all.end(), overrides.begin(), overrides.end());
   HeadlessJob job;
   job.scene = load_scene(scene.name, all);

@@ -11,6 +11,8 @@ namespace icloth {
 /// A scene as it is run for speed against error.
 struct TrialScene {
   const char* name;
+  int triangles;
+  double thickness;  ///< h of the scene file [m]
   std::vector<std::string> overrides;
   double interval;  ///< between samples [s]
   int samples;
