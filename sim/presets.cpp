@@ -24,20 +24,17 @@ constexpr Preset::Setting kAccurate[] = {{"step.time_step", "0.0025"},
 
 constexpr Preset kPresets[] = {
     {"fast", "Fast", kFast,
-     "For looking: 1.3 to 3 times as fast as the built-in scenes' own settings. Vertices are 37 mm "
-     "(flag), "
-     "23 mm (scarf), 17 mm (sphere, drape) from a reference with a step of 1/1600 s; own settings: "
-     "27, 10, 9, 11 mm."},
+     "For looking: 1.3 (flag) to 3 times (sphere) as fast as the built-in scenes' own settings. "
+     "Vertices are 37 mm (flag) and 17 mm (sphere) from a reference with a step of 1/1600 s, with "
+     "the scenes' own settings 27 and 9 mm."},
     {"normal", "Normal", kNormal,
-     "About as fast as the built-in scenes' own settings, sphere 1.6 times. Vertices are 22 mm "
-     "(flag), 10 mm (scarf), 7 mm "
-     "(sphere), 12 mm (drape) from a reference with a step of 1/1600 s, energies 3 to 13 %; own "
-     "settings: 27, 10, 9, 11 mm, 10 to 18 %."},
+     "1.0 (flag) to 1.6 times (sphere) as fast as the built-in scenes' own settings, and nearer "
+     "to a reference with a step of 1/1600 s: vertices are 22 mm (flag) and 7 mm (sphere) away, "
+     "energies 13 and 5 %. With the scenes' own settings: 27 and 9 mm, 13 and 18 %."},
     {"accurate", "Accurate", kAccurate,
-     "For measuring: a third to a half as fast as the built-in scenes' own settings. Vertices are "
-     "6 mm (flag), 4 mm (scarf), "
-     "2 mm (sphere), 11 mm (drape, where folds decide) from a reference with a step of 1/1600 s, "
-     "energies 2 to 5 %."},
+     "For measuring: a third (flag) to a half (sphere) as fast as the built-in scenes' own "
+     "settings. Vertices are 6 mm (flag) and 2 mm (sphere) from a reference with a step of "
+     "1/1600 s, energies 2 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
 };
 
 }  // namespace
