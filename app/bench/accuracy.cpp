@@ -138,7 +138,7 @@ Plot plot_of(const std::string& scene, const std::vector<Point>& points, const c
     if (p.front) front.points.push_back(point);
     if (std::ranges::find(kDrawn, p.setting.knob) == std::end(kDrawn)) continue;
     if (plot.series.empty() || plot.series.back().name != p.setting.knob)
-      plot.series.push_back({p.setting.knob, {}});
+      plot.series.push_back({p.setting.knob, {}, p.setting.knob != std::string("combination")});
     plot.series.back().points.push_back(point);
   }
   std::ranges::sort(front.points);

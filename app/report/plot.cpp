@@ -110,6 +110,7 @@ std::string Plot::svg() const {
         dots += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"", at_x, at_y) + colour +
                 "\"/>\n";
     }
+    if (!series[k].line) path.clear();
     out += "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
            "\" stroke-width=\"1.5\"/>\n" + dots;
     const double row = kTop + 14 + 16 * static_cast<double>(k);

@@ -10,7 +10,8 @@ namespace icloth {
 struct Series {
   std::string name;
   std::vector<std::pair<double, double>>
-      points;  ///< (x, y); those that cannot be drawn are left out
+      points;        ///< (x, y); those that cannot be drawn are left out
+  bool line = true;  ///< joins them in their order
 };
 
 struct Plot {
