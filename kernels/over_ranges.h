@@ -18,14 +18,12 @@ void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
   if (n < serial_below) return body(Index{0}, n);
   TaskFence fence;
   const auto task = [&body, &fence](const tbb::blocked_range<Index>& r) {
-    fence.task_begins();
+    const TaskFence::Task scope(fence);
     body(r.begin(), r.end());
-    fence.task_ends();
   };
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)), task);
   });
-  fence.all_waited_for();
 }
 
 }  // namespace icloth

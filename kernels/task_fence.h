@@ -16,20 +16,40 @@ extern "C" __attribute__((used)) inline const char* __tsan_default_suppressions(
 
 namespace icloth {
 
+/// Lives as long as a parallel loop, and a Task as long as one of its tasks, however they end.
 class TaskFence {
  public:
 #if defined(__SANITIZE_THREAD__)
   TaskFence() { __tsan_release(&started_); }
-  void task_begins() { __tsan_acquire(&started_); }
-  void task_ends() { __tsan_release(&ended_); }
-  void all_waited_for() { __tsan_acquire(&ended_); }
+  ~TaskFence() { __tsan_acquire(&ended_); }
+#else
+  TaskFence() {}
+  ~TaskFence() {}
+#endif
+  TaskFence(const TaskFence&) = delete;
+  TaskFence& operator=(const TaskFence&) = delete;
 
+  class Task {
+   public:
+#if defined(__SANITIZE_THREAD__)
+    explicit Task(TaskFence& fence) : fence_(fence) { __tsan_acquire(&fence_.started_); }
+    ~Task() { __tsan_release(&fence_.ended_); }
+#else
+    explicit Task(TaskFence&) {}
+    ~Task() {}
+#endif
+    Task(const Task&) = delete;
+    Task& operator=(const Task&) = delete;
+
+#if defined(__SANITIZE_THREAD__)
+   private:
+    TaskFence& fence_;
+#endif
+  };
+
+#if defined(__SANITIZE_THREAD__)
  private:
   char started_ = 0, ended_ = 0;
-#else
-  void task_begins() {}
-  void task_ends() {}
-  void all_waited_for() {}
 #endif
 };
 
