@@ -14,7 +14,8 @@ inline constexpr ImU32 kText = IM_COL32(222, 226, 233, 255), kDim = IM_COL32(138
                        kAccent = IM_COL32(94, 176, 239, 255), kGood = IM_COL32(104, 200, 140, 255),
                        kBad = IM_COL32(240, 92, 84, 255), kChanged = IM_COL32(240, 186, 92, 255),
                        kPanel = IM_COL32(24, 27, 33, 255), kBar = IM_COL32(18, 20, 25, 255),
-                       kWell = IM_COL32(16, 18, 22, 255);
+                       kWell = IM_COL32(16, 18, 22, 255),
+                       kLit = IM_COL32(38, 92, 136, 255);  ///< a button that is in force
 }  // namespace colour
 
 /// Style and font of the current ImGui context for a content scale. The font is DejaVu Sans where

@@ -22,10 +22,6 @@ struct Dots {
   ICLOTH_HD friend Dots operator+(Dots a, Dots b) { return {a.rz + b.rz, a.rr + b.rr}; }
 };
 
-ICLOTH_HD inline double dot_double(Vec3r a, Vec3r b) {
-  return dot(convert<double>(a), convert<double>(b));
-}
-
 /// z = D⁻¹ r.
 struct BlockJacobi {
   View<const Mat3r> inverse_diagonal;  ///< (rows)

@@ -3,8 +3,6 @@
 // Few elements are done by the calling thread: handing work over costs about a microsecond.
 #pragma once
 
-#include <tbb/partitioner.h>
-
 #include <cstring>
 #include <limits>
 #include <memory>

@@ -83,6 +83,12 @@ ICLOTH_HD constexpr Vec3<To> convert(Vec3<From> a) {
   return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
 }
 
+/// Multiplied and added in double precision.
+template <class T>
+ICLOTH_HD constexpr double dot_double(Vec3<T> a, Vec3<T> b) {
+  return dot(convert<double>(a), convert<double>(b));
+}
+
 /// 3×3 matrix, row-major.
 template <class T>
 struct Mat3 {

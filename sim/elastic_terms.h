@@ -3,6 +3,7 @@
 
 #include "kernels/bending.h"
 #include "kernels/strain_limit.h"
+#include "sim/parameters.h"
 #include "sim/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -28,6 +29,12 @@ struct Wind {
 
   ICLOTH_HD bool blows() const { return density > 0 || drag > 0; }
 };
+
+inline Wind wind_of(const Parameters& p) {
+  return {{static_cast<Real>(p.wind_x), static_cast<Real>(p.wind_y), static_cast<Real>(p.wind_z)},
+          static_cast<Real>(p.air_density),
+          static_cast<Real>(p.air_drag)};
+}
 
 /// What the air does to each corner of a face: force − slope Δv of the corner.
 struct AirForce {

@@ -3,7 +3,7 @@
 // the solve applied: linearised at `point`, with dv its solution (≥ cloth_vertices).
 #pragma once
 
-#include "kernels/multilevel.h"
+#include "kernels/parallel.h"
 #include "sim/elastic_terms.h"
 #include "sim/state.h"
 
@@ -40,12 +40,6 @@ struct HandWork {
     return dot_double(k * (target[i] - x1[i]) - c * (v[i] + dv[i]), x1[i] - x0[i]);
   }
 };
-
-inline Wind wind_of(const Parameters& p) {
-  return {{static_cast<Real>(p.wind_x), static_cast<Real>(p.wind_y), static_cast<Real>(p.wind_z)},
-          static_cast<Real>(p.air_density),
-          static_cast<Real>(p.air_drag)};
-}
 
 /// Work of the air on all faces [J]; 0 without air.
 inline double air_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv) {

@@ -19,10 +19,10 @@ namespace {
 const std::string kDamping = "material.damping=0.002", kStep = "step.time_step=0.01";
 
 const TrialScene kScenes[] = {
-    {"flag", 2500, 1e-3, {kStep, kDamping}, 0.1, 4, 4},
-    {"scarf", 2500, 2e-3, {kStep, kDamping}, 0.1, 5, 2},
-    {"sphere", 3000, 1.5e-3, {kStep, kDamping}, 0.2, 3, 3},
-    {"drape", 3000, 1e-3, {kStep, kDamping}, 0.1, 5, 2},
+    {"flag", 2500, {kStep, kDamping}, 0.1, 4, 4},
+    {"scarf", 2500, {kStep, kDamping}, 0.1, 5, 2},
+    {"sphere", 3000, {kStep, kDamping}, 0.2, 3, 3},
+    {"drape", 3000, {kStep, kDamping}, 0.1, 5, 2},
 };
 
 /// One point of the curves: a setting that differs from the scene's own in one thing.
@@ -42,8 +42,7 @@ std::vector<Setting> settings(const TrialScene& scene) {
     for (const char* value : values)
       list.push_back({knob, value, {std::string(parameter) + "=" + value}});
   };
-  for (const char* dt : {"0.02", "0.005", "0.0025"})
-    list.push_back({"time step", dt, {std::string("step.time_step=") + dt}});
+  add("time step", "step.time_step", {"0.02", "0.005", "0.0025"});
   for (const char* dt : {"0.02", "0.01", "0.005", "0.0025"})
     list.push_back(
         {"BDF2, time step", dt, {std::string("step.time_step=") + dt, "implicit.integrator=bdf2"}});
@@ -59,10 +58,11 @@ std::vector<Setting> settings(const TrialScene& scene) {
   add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});
   add("zone iterations", "impact_zones.iterations", {"10", "30", "1000"});
   list.push_back({"precision", "f64", {}, true});
+  const double thickness = trial_scene(scene, {})->parameters.thickness;
   for (const double factor : {0.5, 2.0})
     list.push_back({"thickness",
-                    format_number(1e3 * factor * scene.thickness) + " mm",
-                    {"proximity.thickness=" + format_number(factor * scene.thickness)}});
+                    format_number(1e3 * factor * thickness) + " mm",
+                    {"proximity.thickness=" + format_number(factor * thickness)}});
   for (const int triangles : {scene.triangles / 2, 2 * scene.triangles, 4 * scene.triangles})
     list.push_back({"mesh",
                     std::to_string(triangles) + " triangles",
@@ -203,10 +203,8 @@ class AccuracySuite {
 }  // namespace
 
 int run_accuracy(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
-  const Build build = options.device.empty() ? Build::cpu32 : chosen_builds(options.device).front();
-  Report report("icloth bench accuracy", describe_machine(options.threads, build == Build::cuda32));
+  const Build build = only_build(options);
+  Report report = begin_report(options, build);
   AccuracySuite suite(build, report);
   bool any = false;
   for (const TrialScene& scene : kScenes) {
@@ -216,10 +214,7 @@ int run_accuracy(const BenchOptions& options) {
   }
   if (chosen(options, "parts")) show_parts(build, report), any = true;
   if (!any) throw no_such_case(options);
-  if (!options.out.empty()) {
-    report.write(options.out);
-    std::printf("%s/report.html\n", options.out.c_str());
-  }
+  finish_report(options, report);
   return suite.clean() ? 0 : 1;
 }
 

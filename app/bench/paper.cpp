@@ -261,10 +261,8 @@ void compare_broad_phases(Frames& frames, Report& report) {
 }  // namespace
 
 int run_paper(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
-  const Build build = options.device.empty() ? Build::cpu32 : chosen_builds(options.device).front();
-  Report report("icloth bench paper", describe_machine(options.threads, build == Build::cuda32));
+  const Build build = only_build(options);
+  Report report = begin_report(options, build);
   bool clean = compare_responses(build, report);
   {
     Frames frames(build, kScene, kTangled, kFirst, kLast, kEvery);
@@ -275,10 +273,7 @@ int run_paper(const BenchOptions& options) {
   }
   compare_with_optimum(report);
   clean = compare_time_steps(build, report) && clean;
-  if (!options.out.empty()) {
-    report.write(options.out);
-    std::printf("%s/report.html\n", options.out.c_str());
-  }
+  finish_report(options, report);
   return clean ? 0 : 1;
 }
 

@@ -82,10 +82,8 @@ void compare(Frames& frames, const SolverCase& test, Table& table) {
 }  // namespace
 
 int run_solver(const BenchOptions& options) {
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
-  const Build build = options.device.empty() ? Build::cpu32 : chosen_builds(options.device).front();
-  Report report("icloth bench solver", describe_machine(options.threads, build == Build::cuda32));
+  const Build build = only_build(options);
+  Report report = begin_report(options, build);
   Table table("preconditioners", "Steps from the same states",
               {"scene", "step", "contacts", "preconditioner", "solves", "iterations a solve",
                "residual", "ms solve", "ms set-up", "times faster"});
@@ -101,10 +99,7 @@ int run_solver(const BenchOptions& options) {
       "1e-3. Times are sums over the solves of the step; the set-up is what the preconditioner "
       "needs for every system; faster: block-Jacobi's time divided by the row's.");
   report.add(table);
-  if (!options.out.empty()) {
-    report.write(options.out);
-    std::printf("%s/report.html\n", options.out.c_str());
-  }
+  finish_report(options, report);
   return 0;
 }
 

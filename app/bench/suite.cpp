@@ -1,5 +1,6 @@
 #include "app/bench/suite.h"
 
+#include <cstdio>
 #include <filesystem>
 
 #include "app/machine.h"
@@ -66,6 +67,23 @@ Json begin_suite(const BenchOptions& options, const std::vector<Build>& builds) 
   results["suite"] = options.suite;
   results["machine"] = describe_machine(options.threads, builds.back() == Build::cuda32);
   return results;
+}
+
+Build only_build(const BenchOptions& options) {
+  return options.device.empty() ? Build::cpu32 : chosen_builds(options.device).front();
+}
+
+Report begin_report(const BenchOptions& options, Build build) {
+  make_output_folder(options.out);
+  set_thread_count(options.threads);
+  return {"icloth bench " + options.suite,
+          describe_machine(options.threads, build == Build::cuda32)};
+}
+
+void finish_report(const BenchOptions& options, const Report& report) {
+  if (options.out.empty()) return;
+  report.write(options.out);
+  std::printf("%s/report.html\n", options.out.c_str());
 }
 
 bool chosen(const BenchOptions& options, std::string_view name) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/report/report.h"
 #include "app/verbs/bench.h"
 #include "sim/error.h"
 #include "sim/simulator.h"
@@ -24,6 +25,13 @@ void make_output_folder(const std::string& folder, const char* option = "--out")
 
 /// Makes the folder, sets the threads; the head of results.json: suite and machine.
 nlohmann::ordered_json begin_suite(const BenchOptions& options, const std::vector<Build>& builds);
+
+/// Of a suite that runs on one build: the CPU's unless another device was asked for.
+Build only_build(const BenchOptions& options);
+/// Makes the folder, sets the threads; an empty report of the suite.
+Report begin_report(const BenchOptions& options, Build build);
+/// Writes it where --out says, if anywhere.
+void finish_report(const BenchOptions& options, const Report& report);
 
 /// Whether --case leaves this case in.
 bool chosen(const BenchOptions& options, std::string_view name);

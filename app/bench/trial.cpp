@@ -35,12 +35,8 @@ Sample sample_of(const Simulator& simulator, std::size_t vertices, const StepRep
   Snapshot state = simulator.snapshot();
   state.positions.resize(vertices);
   state.velocities.resize(vertices);
-  return {std::move(state.positions),
-          std::move(state.velocities),
-          report.kinetic_energy + report.elastic_energy + report.gravity_energy,
-          report.kinetic_energy,
-          report.elastic_energy,
-          report.gravity_energy};
+  return {std::move(state.positions), std::move(state.velocities), report.kinetic_energy,
+          report.elastic_energy, report.gravity_energy};
 }
 
 void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
@@ -70,13 +66,18 @@ void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
 
 }  // namespace
 
-Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
-                int repeats) {
+std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
+                                         const std::vector<std::string>& overrides) {
   std::vector<std::string> all{"triangles=" + std::to_string(scene.triangles)};
   all.insert(all.end(), scene.overrides.begin(), scene.overrides.end());
   all.insert(all.end(), overrides.begin(), overrides.end());
+  return load_scene(scene.name, all);
+}
+
+Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
+                int repeats) {
   HeadlessJob job;
-  job.scene = load_scene(scene.name, all);
+  job.scene = trial_scene(scene, overrides);
   job.build = build;
   job.quiet = true;
   const double per_sample = scene.interval / job.scene->parameters.time_step;
@@ -105,7 +106,7 @@ Errors compare(const Trial& trial, const Trial& reference, int samples_alike) {
     const Sample &a = trial.samples[k], &b = reference.samples[k];
     energy_change =
         std::max(energy_change, b.kinetic + b.elastic + std::fabs(b.gravity - start_gravity));
-    errors.energy = std::max(errors.energy, std::fabs(a.energy - b.energy));
+    errors.energy = std::max(errors.energy, std::fabs(a.energy() - b.energy()));
     Vec3d momentum_error;
     double size = 0;
     for (std::size_t i = 0; same_mesh && i < trial.mass.size(); ++i) {

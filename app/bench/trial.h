@@ -12,7 +12,6 @@ namespace icloth {
 struct TrialScene {
   const char* name;
   int triangles;
-  double thickness;  ///< h of the scene file [m]
   std::vector<std::string> overrides;
   double interval;  ///< between samples [s]
   int samples;
@@ -23,9 +22,10 @@ struct TrialScene {
 
 /// State of the cloths at one time.
 struct Sample {
-  std::vector<Vec3d> positions, velocities;  ///< of the cloths' vertices
-  double energy = 0;                         ///< kinetic, elastic and of gravity [J]
-  double kinetic = 0, elastic = 0, gravity = 0;
+  std::vector<Vec3d> positions, velocities;      ///< of the cloths' vertices
+  double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
+
+  double energy() const { return kinetic + elastic + gravity; }
 };
 
 struct Trial {
@@ -40,7 +40,11 @@ struct Trial {
   bool finished = false;  ///< no step was refused
 };
 
-/// `overrides` come after those of the scene; the time step must divide the interval.
+/// The scene as a trial loads it; `overrides` come after its own.
+std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
+                                         const std::vector<std::string>& overrides);
+
+/// Runs it so; the time step must divide the interval.
 Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
                 int repeats);
 

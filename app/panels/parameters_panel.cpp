@@ -151,7 +151,7 @@ void draw_presets(ParameterEdits& edits) {
   for (const Preset& preset : presets()) {
     if (&preset != &presets().front()) ImGui::SameLine();
     const bool on = is_set(edits.values(), preset);
-    if (on) ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32(38, 92, 136, 255));
+    if (on) ImGui::PushStyleColor(ImGuiCol_Button, colour::kLit);
     const bool pressed = ImGui::Button(std::string(preset.label).c_str(), {width, 0});
     if (on) ImGui::PopStyleColor();
     explain_preset(preset);

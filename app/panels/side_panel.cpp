@@ -48,8 +48,7 @@ void draw_transport(PanelContext& context) {
   const PublishedState& state = context.state;
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
-  if (wide_button(state.playing ? "Pause" : "Play", width,
-                  state.playing ? 0 : IM_COL32(38, 92, 136, 255))) {
+  if (wide_button(state.playing ? "Pause" : "Play", width, state.playing ? 0 : colour::kLit)) {
     state.playing ? context.session.pause() : context.session.play();
   }
   tooltip("Space");
