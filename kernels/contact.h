@@ -28,18 +28,26 @@ struct Contact {
   Real thickness;  ///< h of the pair [m]
 };
 
+/// Symmetric 3×3 matrix.
+struct Symmetric {
+  Real m[6];  ///< xx xy xz yy yz zz
+  ICLOTH_HD friend Vec3r operator*(const Symmetric& a, Vec3r v) {
+    return {a.m[0] * v.x + a.m[1] * v.y + a.m[2] * v.z, a.m[1] * v.x + a.m[3] * v.y + a.m[4] * v.z,
+            a.m[2] * v.x + a.m[4] * v.y + a.m[5] * v.z};
+  }
+  ICLOTH_HD Mat3r scaled(Real s) const {
+    return {
+        {s * m[0], s * m[1], s * m[2], s * m[1], s * m[3], s * m[4], s * m[2], s * m[4], s * m[5]}};
+  }
+};
+
 /// What a contact adds to the system A Δv = b: H [kg] on the left, impulse [N·s] on the right.
 struct ContactTerm {
-  Real h[6];      ///< symmetric: xx xy xz yy yz zz
+  Symmetric h;
   Vec3r impulse;  ///< Σ over corners with their weights
   Vec3r sliding;  ///< direction of the friction of a sliding pair, zero of one that sticks
   Index active;   ///< 0: the pair stays further apart than h and adds nothing
 };
-
-ICLOTH_HD inline Vec3r multiply(const ContactTerm& t, Vec3r v) {
-  return {t.h[0] * v.x + t.h[1] * v.y + t.h[2] * v.z, t.h[1] * v.x + t.h[3] * v.y + t.h[4] * v.z,
-          t.h[2] * v.x + t.h[4] * v.y + t.h[5] * v.z};
-}
 
 /// Part of `a` along the contact.
 ICLOTH_HD inline Vec3r tangential(const Contact& c, Vec3r a) {
@@ -129,8 +137,7 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
       h += kdt2 * (Mat3r::identity(1) - outer(n, n));
     }
   }
-  t.h[0] = h.m[0], t.h[1] = h.m[1], t.h[2] = h.m[2];
-  t.h[3] = h.m[4], t.h[4] = h.m[5], t.h[5] = h.m[8];
+  t.h = {{h.m[0], h.m[1], h.m[2], h.m[4], h.m[5], h.m[8]}};
   return t;
 }
 
@@ -138,7 +145,7 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
 ICLOTH_HD inline Vec3r applied_force(const ContactTerm& t, const ContactLaw& law,
                                      const ContactMotion& motion) {
   const Vec3r dv = (Real(1) / law.dt) * (motion.end - motion.free);
-  return (Real(1) / law.dt) * (t.impulse - multiply(t, dv));
+  return (Real(1) / law.dt) * (t.impulse - t.h * dv);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -86,9 +86,7 @@ struct FinishNode {
 struct FinishFirstLevel {
   View<const Index> child_first, child;
   View<const Real> inverse_mass;
-  View<const Contact> contacts;
-  View<const ContactTerm> terms;
-  View<const Index> contact_first, contact_entries;
+  CouplingView couplings;
   FinishNode finish;
 
   /// A contact is lumped: |w| H at each of its vertices, which is not less than w wᵀ⊗H of one side.
@@ -97,14 +95,8 @@ struct FinishFirstLevel {
     for (Index c = child_first[i]; c < child_first[i + 1]; ++c) {
       const Index v = child[c];
       if (!(inverse_mass[v] > 0)) continue;
-      for (Index k = contact_first[v]; k < contact_first[v + 1]; ++k) {
-        const Index entry = contact_entries[k];
-        const ContactTerm& t = terms[entry / 4];
-        if (t.active == 0) continue;
-        const Real w = std::fabs(contacts[entry / 4].s.w[entry % 4]), *h = t.h;
-        sum += Mat3r{{w * h[0], w * h[1], w * h[2], w * h[1], w * h[3], w * h[4], w * h[2],
-                      w * h[4], w * h[5]}};
-      }
+      couplings.of_vertex(
+          v, [&](Index k, Real w) { sum += couplings.list[k].h.scaled(std::fabs(w)); });
     }
     finish(i, sum);
   }
@@ -253,10 +245,9 @@ void Hierarchy::fill_contacts(const SystemView& system) {
                           matrix_.value.view(),     contact_.view(), smoother_.view()};
   for (int l = 0; l < levels_; ++l) {
     if (l == 0)
-      for_each(
-          "implicit.coarse_nodes", level_[l].count,
-          FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass, system.contacts,
-                           system.terms, system.contact_first, system.contact_entries, finish});
+      for_each("implicit.coarse_nodes", level_[l].count,
+               FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass,
+                                system.couplings, finish});
     else
       for_each("implicit.coarse_nodes", level_[l].count,
                FinishLevel{child_first_.view(), child_.view(), finish, level_[l].first});

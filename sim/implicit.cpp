@@ -168,8 +168,7 @@ struct EndVelocity {
 struct EndTwoSteps {
   View<const Vec3r> x0, x1, candidate;
   View<const Real> inverse_mass;
-  View<const Index> contact_first, contact_entries;
-  View<const ContactTerm> term;
+  CouplingView couplings;  ///< of the last solve
   TimeRule rule;
   View<Vec3r> v, past_motion, past_change;
 
@@ -185,19 +184,15 @@ struct EndTwoSteps {
 
   ICLOTH_HD bool touches(Index i) const {
     const Vec3r correction = x1[i] - candidate[i];
-    if (!(norm2(correction) == 0)) return true;
-    for (Index k = contact_first[i]; k < contact_first[i + 1]; ++k)
-      if (term[contact_entries[k] / 4].active != 0) return true;
-    return false;
+    return !(norm2(correction) == 0) || couplings.touch(i);
   }
 };
 
 /// Adds the contacts of one vertex to its right-hand side and inverts its diagonal block.
 struct FinishRow {
-  View<const Index> row_first, contact_first, contact_entries;
+  View<const Index> row_first;
   View<const Mat3r> value;
-  View<const Contact> contacts;
-  View<const ContactTerm> terms;
+  CouplingView couplings;
   View<const Real> inverse_mass;
   View<const Vec3r> rhs;
   View<Vec3r> contact_rhs;  ///< with the contacts
@@ -210,15 +205,11 @@ struct FinishRow {
       return;
     }
     Mat3r block = value[row_first[i]];  // the diagonal comes first
-    for (Index k = contact_first[i]; k < contact_first[i + 1]; ++k) {
-      const Index entry = contact_entries[k];
-      const Real w = contacts[entry / 4].s.w[entry % 4];
-      const ContactTerm& t = terms[entry / 4];
-      contact_rhs[i] += w * t.impulse;
-      const Real s = w * w;
-      block += Mat3r{{s * t.h[0], s * t.h[1], s * t.h[2], s * t.h[1], s * t.h[3], s * t.h[4],
-                      s * t.h[2], s * t.h[4], s * t.h[5]}};
-    }
+    couplings.of_vertex(i, [&](Index k, Real w) {
+      const Coupling& c = couplings.list[k];
+      contact_rhs[i] += w * c.impulse;
+      block += c.h.scaled(w * w);
+    });
     inverse_diagonal[i] = inverse_spd(block);
   }
 };
@@ -426,20 +417,18 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
   const Topology& mesh = step.mesh;
   State& s = step.state;
   const Array<Contact>& contacts = proximity.contacts();
-  const Incidence& incidence = proximity.incidence();
   contact_terms_.resize(contacts.size());
   inverse_diagonal_.resize(mesh.cloth_vertices);
   contact_rhs_.resize(mesh.cloth_vertices);
-  const SystemView system{matrix_.view(),        s.inverse_mass.view(), contacts.view(),
-                          contact_terms_.view(), incidence.first(),     incidence.entries()};
   const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), rule_.h};
   VertexMotion motion{free_motion_.view(), dv_.view(), s.inverse_mass.view(), rule_.h, solved};
   for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
+    couplings_.gather(contacts.view(), contact_terms_.view(), mesh.cloth_vertices);
+    const SystemView system{matrix_.view(), s.inverse_mass.view(), couplings_.view()};
     for_each("implicit.finish_rows", mesh.cloth_vertices,
-             FinishRow{matrix_.row_first.view(), incidence.first(), incidence.entries(),
-                       matrix_.value.view(), contacts.view(), contact_terms_.view(),
+             FinishRow{matrix_.row_first.view(), matrix_.value.view(), system.couplings,
                        s.inverse_mass.view(), rhs_.view(), contact_rhs_.view(),
                        inverse_diagonal_.view()});
     const LinearSolution solution =
@@ -474,7 +463,7 @@ double Implicit::move(StepContext& step, const Linearization& point) {
              Max{}));
 }
 
-void Implicit::end(State& state, const Proximity& proximity) {
+void Implicit::end(State& state) {
   const Index vertices = state.mass.size();
   const Real dt = rule_.dt;
   if (rule_.integrator == Integrator::backward_euler) {
@@ -488,9 +477,8 @@ void Implicit::end(State& state, const Proximity& proximity) {
   state.past.change.resize(vertices);
   for_each("implicit.velocities", vertices,
            EndTwoSteps{state.x0.view(), state.x1.view(), state.candidate.view(),
-                       state.inverse_mass.view(), proximity.incidence().first(),
-                       proximity.incidence().entries(), contact_terms_.view(), rule_,
-                       state.v.view(), state.past.motion.view(), state.past.change.view()});
+                       state.inverse_mass.view(), couplings_.view(), rule_, state.v.view(),
+                       state.past.motion.view(), state.past.change.view()});
   state.past.dt = static_cast<double>(dt);
 }
 

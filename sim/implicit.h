@@ -25,7 +25,7 @@ class Implicit {
   void integrate(StepContext& step, const Proximity& proximity);
 
   /// Velocities at the end of the substep x0 → x1, and what the next one goes on from.
-  void end(State& state, const Proximity& proximity);
+  void end(State& state);
 
   /// Largest tension that the last linearisation missed [N/m].
   double missed_tension() const { return missed_tension_; }
@@ -45,10 +45,11 @@ class Implicit {
   BlockMatrix matrix_;
   /// Which element blocks add up to a stored block: 9·face + 3a + b, 16·hinge + 4a + b.
   Array<Index> face_source_first_, face_source_, hinge_source_first_, hinge_source_;
-  Array<FaceTerm> face_terms_;    ///< (cloth_faces), assemble
-  Array<HingeTerm> hinge_terms_;  ///< (hinges), bend
-  Array<PlateTerm> plate_terms_;  ///< (cloth_faces), bend
-  Array<ContactTerm> contact_terms_;
+  Array<FaceTerm> face_terms_;           ///< (cloth_faces), assemble
+  Array<HingeTerm> hinge_terms_;         ///< (hinges), bend
+  Array<PlateTerm> plate_terms_;         ///< (cloth_faces), bend
+  Array<ContactTerm> contact_terms_;     ///< of every pair in proximity
+  Couplings couplings_;                  ///< those of them that acted in the last solve
   Array<Mat3r> inverse_diagonal_;        ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_, contact_rhs_, dv_;  ///< without and with contacts; Δv (cloth_vertices)
   TimeRule rule_{};                      ///< of the substep, integrate

@@ -24,7 +24,7 @@ struct ConjugateGradients {
   View<const Vec3r> b;
   View<Vec3r> x, r, z, p, q;
   View<Vec3r> best;     ///< x of the smallest true residual seen
-  View<Vec3r> contact;  ///< H Σ w p of each contact
+  View<Vec3r> contact;  ///< H Σ w p of each coupling
   double tolerance;
   int max_iterations;
   View<LinearSolution> solution;  ///< (1)
@@ -35,14 +35,11 @@ struct ConjugateGradients {
     if (contact.size() > 0) {
       team.for_each(contact.size(), [&](Index c) {
         Vec3r sum{};
-        if (system.terms[c].active == 0) {  // most are: they only might close
-          contact[c] = sum;
-          return;
-        }
-        const Stencil& s = system.contacts[c].s;
+        const Coupling& coupling = system.couplings.list[c];
+        const Stencil& s = coupling.s;
         for (int a = 0; a < 4; ++a)
           if (s.v[a] < b.size()) sum += s.w[a] * v[s.v[a]];
-        contact[c] = icloth::ICLOTH_BUILD::multiply(system.terms[c], sum);
+        contact[c] = coupling.h * sum;
       });
     }
     return team.reduce(
@@ -53,10 +50,7 @@ struct ConjugateGradients {
             return 0.0;
           }
           Vec3r sum = multiply_row(system, i, &v.data()->x);
-          for (Index k = system.contact_first[i]; k < system.contact_first[i + 1]; ++k) {
-            const Index entry = system.contact_entries[k];
-            sum += system.contacts[entry / 4].s.w[entry % 4] * contact[entry / 4];
-          }
+          system.couplings.of_vertex(i, [&](Index c, Real w) { sum += w * contact[c]; });
           q[i] = sum;
           return dot_double(v[i], sum);
         },
@@ -150,8 +144,8 @@ struct ConjugateGradients {
 double bytes_per_iteration(const SystemView& system, Index rows) {
   const double blocks = system.column.size(), others = system.lower_column.size();
   return blocks * (9 * sizeof(Real) + sizeof(Index)) + 2 * sizeof(Index) * others +
-         static_cast<double>(system.contacts.size()) *
-             (sizeof(Contact) + sizeof(ContactTerm) + 2 * sizeof(Vec3r)) +
+         static_cast<double>(system.couplings.size()) *
+             (sizeof(Coupling) + 4 * sizeof(Index) + 2 * sizeof(Vec3r)) +
          static_cast<double>(rows) *
              (15 * sizeof(Vec3r) + sizeof(Mat3r) + sizeof(Real) + 3 * sizeof(Index));
 }
@@ -164,12 +158,12 @@ constexpr double kMissed = 1.5;
 LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                                    View<const Vec3r> b, View<Vec3r> padded,
                                    const SolveOptions& options) {
-  const Index n = b.size(), contacts = system.contacts.size();
+  const Index n = b.size(), couplings = system.couplings.size();
   for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_, &best_}) a->resize(n + kPadding);
-  contact_.resize(contacts);
+  contact_.resize(couplings);
   solution_.resize(1);
   const auto iterate = [&](const auto& preconditioner, int max_iterations) {
-    with_device_team("implicit.solve", std::max(n, contacts),
+    with_device_team("implicit.solve", std::max(n, couplings),
                      ConjugateGradients<std::decay_t<decltype(preconditioner)>>{
                          system, preconditioner, b, padded.sub(0, n), r_.view().sub(0, n),
                          z_.view().sub(0, n), p_.view(), q_.view(), best_.view(), contact_.view(),

@@ -37,7 +37,7 @@ class LinearSolver {
  private:
   Hierarchy hierarchy_;
   Array<Vec3r> r_, z_, p_, q_, best_;
-  Array<Vec3r> contact_;  ///< H Σ w p of each contact
+  Array<Vec3r> contact_;  ///< H Σ w p of each coupling
   Array<LinearSolution> solution_;
 };
 

@@ -236,9 +236,13 @@ constexpr double kRampTime = 0.2;  // [s]
 
 /// Layers that start closer than h would be thrown apart by a repulsion that acts at once.
 void Proximity::note_start_gaps(const StepContext& step) {
+  Array<Int4> slots(contacts_.size());
+  for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots.view()});
+  Incidence incidence;
+  incidence.build(slots.view(), step.mesh.cloth_vertices);
   start_gap_.resize(step.mesh.cloth_vertices);
   const Index close = reduce("proximity.start_gaps", step.mesh.cloth_vertices, Index{0},
-                             StartGap{contacts_.view(), incidence_.first(), incidence_.entries(),
+                             StartGap{contacts_.view(), incidence.first(), incidence.entries(),
                                       start_gap_.view(), step.thickness()},
                              Sum{});
   if (close == 0) start_gap_.resize(0);
@@ -264,11 +268,9 @@ void Proximity::recall_friction() {
              RecallFriction{held_.view(), contacts_.view()});
 }
 
-void Proximity::clear(StepContext& step) {
+void Proximity::clear() {
   contacts_.resize(0);
   rubs_ = false;
-  slots_.resize(0);
-  incidence_.build(slots_.view(), step.mesh.cloth_vertices);
 }
 
 void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
@@ -303,9 +305,6 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
   append_sorted_("proximity.sort", found_, contacts_);
 
   recall_friction();
-  slots_.resize(contacts_.size());
-  for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots_.view()});
-  incidence_.build(slots_.view(), mesh.cloth_vertices);
   if (step.time == 0) note_start_gaps(step);
   if (!start_gap_.empty() && step.time < kRampTime) ramp_thickness(step);
   step.report.proximity_pairs = contacts_.size();

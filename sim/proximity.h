@@ -20,7 +20,7 @@ class Proximity {
   /// Finds the contacts of the step at x0, sorted by pair key.
   void find(StepContext& step, const BroadPhase& broad_phase);
   /// No contacts in this step.
-  void clear(StepContext& step);
+  void clear();
   /// Keeps what the contacts hold after the accepted motion x0 → x1, for the next find.
   void keep_friction(const State& state, const Parameters& parameters, Real dt);
 
@@ -29,7 +29,6 @@ class Proximity {
   Array<HeldForce>& held() { return held_; }
 
   const Array<Contact>& contacts() const { return contacts_; }
-  const Incidence& incidence() const { return incidence_; }
 
  private:
   void recall_friction();
@@ -39,8 +38,6 @@ class Proximity {
   Array<Contact> contacts_;  ///< (contacts), find
   Array<Contact> found_;
   SortedAppend append_sorted_;
-  Array<Int4> slots_;
-  Incidence incidence_;
   Array<HeldForce> held_;  ///< of pairs with friction, keep_friction
   bool rubs_ = false;      ///< some contacts may have friction, find
   /// Smallest gap of each vertex in the start state, at most h [m] (cloth_vertices); empty when

@@ -40,7 +40,7 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
     if (parameters_.proximity_enabled)
       proximity_.find(step, broad_phase_);
     else
-      proximity_.clear(step);
+      proximity_.clear();
   });
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   report.finite = all_finite(state_);

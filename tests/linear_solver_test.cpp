@@ -49,7 +49,7 @@ struct RandomSystem : TestSystem {
   }
 
   void add_contact() {
-    Contact c{};
+    Coupling c{};
     for (int a = 0; a < 4; ++a) {
       c.s.v[a] = vertex(a < 2 ? kFree : kAll);
       for (int before = 0; before < a; ++before)
@@ -58,12 +58,9 @@ struct RandomSystem : TestSystem {
     }
     const Vec3r n = vector();
     const Real d = 10, drag = uniform(0, 1);
-    ContactTerm t{};
-    t.active = 1;
-    t.h[0] = drag + d * n.x * n.x, t.h[1] = d * n.x * n.y, t.h[2] = d * n.x * n.z;
-    t.h[3] = drag + d * n.y * n.y, t.h[4] = d * n.y * n.z, t.h[5] = drag + d * n.z * n.z;
-    contact_list.push_back(c);
-    term_list.push_back(t);
+    c.h = {{drag + d * n.x * n.x, d * n.x * n.y, d * n.x * n.z, drag + d * n.y * n.y, d * n.y * n.z,
+            drag + d * n.z * n.z}};
+    coupling_list.push_back(c);
   }
 
   LinearSolution solve(double tolerance, int iterations,
@@ -82,9 +79,9 @@ struct RandomSystem : TestSystem {
           a(3 * place.first + r, 3 * place.second + c) = value;
           a(3 * place.second + c, 3 * place.first + r) = value;
         }
-    for (std::size_t k = 0; k < contact_list.size(); ++k) {
-      const Stencil& s = contact_list[k].s;
-      const Real* h = term_list[k].h;
+    for (const Coupling& coupling : coupling_list) {
+      const Stencil& s = coupling.s;
+      const Real* h = coupling.h.m;
       Eigen::Matrix3d block;
       block << h[0], h[1], h[2], h[1], h[3], h[4], h[2], h[4], h[5];
       for (int p = 0; p < 4; ++p)

@@ -15,14 +15,12 @@ inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 struct TestSystem {
   std::vector<Real> inverse_mass;
   std::map<std::pair<Index, Index>, Mat3r> blocks;  ///< upper half
-  std::vector<Contact> contact_list;
-  std::vector<ContactTerm> term_list;
+  std::vector<Coupling> coupling_list;
   std::vector<Index> row_first{0}, column;
 
   BlockMatrix matrix;
   Array<Real> masses;
-  Array<Contact> contacts;
-  Array<ContactTerm> terms;
+  Array<Coupling> couplings;
   Incidence incidence;
   Array<Mat3r> inverse_diagonal;
   Array<Vec3r> b, x;
@@ -50,10 +48,9 @@ struct TestSystem {
       inverse.push_back(inverse_mass[at(i)] > 0 ? inverse_spd(blocks[{i, i}]) : Mat3r{});
     inverse_diagonal.upload(inverse);
     masses.upload(inverse_mass);
-    contacts.upload(contact_list);
-    terms.upload(term_list);
+    couplings.upload(coupling_list);
     std::vector<Int4> corners;
-    for (const Contact& c : contact_list)
+    for (const Coupling& c : coupling_list)
       corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
     Array<Int4> slots;
     slots.upload(corners);
@@ -64,8 +61,8 @@ struct TestSystem {
   }
 
   SystemView system() {
-    return {matrix.view(), masses.view(),     contacts.view(),
-            terms.view(),  incidence.first(), incidence.entries()};
+    return {
+        matrix.view(), masses.view(), {couplings.view(), incidence.first(), incidence.entries()}};
   }
 
   /// Starts from what x holds.

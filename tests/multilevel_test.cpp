@@ -57,28 +57,24 @@ struct Sheets : TestSystem {
   }
 
   void add_contact(Index i, Real stiffness) {
-    Contact c{};
+    Coupling c{};
     const Index other = i + side * side;
     const Index corners[4] = {i, other, other == count - 1 ? other - 1 : other + 1,
                               count + i % 5};  // the last one is an obstacle's
     const Real weights[4] = {1, Real(-0.5), Real(-0.25), Real(-0.25)};
-    ContactTerm t{};
-    t.active = 1;
     for (int a = 0; a < 4; ++a) c.s.v[a] = corners[a], c.s.w[a] = weights[a];
-    t.h[0] = t.h[3] = Real(0.1) * stiffness, t.h[5] = stiffness;
-    contact_list.push_back(c);
-    term_list.push_back(t);
+    const Real along = Real(0.1) * stiffness;
+    c.h = {{along, 0, 0, along, 0, stiffness}};
+    coupling_list.push_back(c);
   }
 
   void upload() {
     upload_matrix(count);
     inverse_mass.resize(at(count) + 5, 0);
-    for (std::size_t c = 0; c < contact_list.size(); ++c)
+    for (const Coupling& c : coupling_list)
       for (int a = 0; a < 4; ++a) {
-        const Stencil& s = contact_list[c].s;
-        const Real w2 = s.w[a] * s.w[a], *h = term_list[c].h;
-        if (s.v[a] < count)
-          blocks[{s.v[a], s.v[a]}] += w2 * Mat3r{{h[0], 0, 0, 0, h[3], 0, 0, 0, h[5]}};
+        const Index v = c.s.v[a];
+        if (v < count) blocks[{v, v}] += c.h.scaled(c.s.w[a] * c.s.w[a]);
       }
     std::vector<Vec3r> rhs;
     for (Index i = 0; i < count; ++i)
