@@ -58,6 +58,9 @@ struct Multilevel {
   View<const Index> child;             ///< vertices of a node of the finest level, else nodes
   View<const Index> parent;            ///< of each node but the coarsest level's (nodes)
   MatrixView matrix;                   ///< of all levels: no block between two of them (nodes)
+  View<const Index> coupled_first;     ///< of the finest level, or none (nodes of it + 1)
+  View<const Index> coupled_node;      ///< columns of `coupled`
+  View<const Mat3r> coupled;           ///< what contacts add to the finest level, full rows
   View<const Mat3r> smoother;          ///< kDamping × inverse diagonal block (nodes)
   View<Vec3r> b, z, t;                 ///< right-hand side, correction, scratch (nodes)
   Level level[kMaxLevels];
@@ -82,8 +85,17 @@ struct Multilevel {
   }
 
  private:
+  /// Row i of the level's matrix times v.
+  ICLOTH_HD Vec3r multiplied(Index i, View<const Vec3r> v) const {
+    Vec3r sum = multiply_row(matrix, i, &v.data()->x);
+    if (i + 1 < coupled_first.size())
+      for (Index k = coupled_first[i]; k < coupled_first[i + 1]; ++k)
+        sum += coupled[k] * v[coupled_node[k]];
+    return sum;
+  }
+
   ICLOTH_HD Vec3r swept(Index i, View<const Vec3r> from) const {
-    return from[i] + smoother[i] * (b[i] - multiply_row(matrix, i, &from.data()->x));
+    return from[i] + smoother[i] * (b[i] - multiplied(i, from));
   }
 
   /// Leaves in t what the next level has to correct, or on the coarsest the correction.
@@ -100,7 +112,7 @@ struct Multilevel {
     if (l + 1 < levels) {
       team.for_each(count, [&](Index k) {
         const Index i = first + k;
-        t[i] = b[i] - multiply_row(matrix, i, &z.data()->x);
+        t[i] = b[i] - multiplied(i, z);
       });
       return;
     }

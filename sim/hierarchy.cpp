@@ -68,50 +68,53 @@ struct AddMass {
   }
 };
 
-struct FinishNode {
-  View<const Index> row_first;
-  View<const Real> mass;
-  View<const Mat3r> diagonal;
-  View<Mat3r> value, contact, smoother;
-
-  ICLOTH_HD void operator()(Index i, const Mat3r& contacts) const {
-    contact[i] = contacts;
-    Mat3r block = diagonal[i];
-    block += contacts;
-    value[row_first[i]] = block;
-    smoother[i] = mass[i] > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
-  }
-};
+ICLOTH_HD Mat3r smoother_of(const Mat3r& block, Real mass) {
+  return mass > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
+}
 
 struct FinishFirstLevel {
   View<const Index> child_first, child;
   View<const Real> inverse_mass;
   CouplingView couplings;
-  FinishNode finish;
+  View<const Index> coupled_first, coupled_node;  ///< see CoarseCouplings
+  View<const Mat3r> coupled;
+  View<const Real> mass;
+  View<const Mat3r> diagonal;
+  View<Mat3r> lumped, smoother;
 
-  /// A contact is lumped: |w| H at each of its vertices, which is not less than w wᵀ⊗H of one side.
+  /// Lumped is |w| H at each vertex, which is not less than w wᵀ⊗H of one side.
   ICLOTH_HD void operator()(Index i) const {
     Mat3r sum{};
-    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) {
-      const Index v = child[c];
-      if (!(inverse_mass[v] > 0)) continue;
-      couplings.of_vertex(
-          v, [&](Index k, Real w) { sum += couplings.list[k].h.scaled(std::fabs(w)); });
-    }
-    finish(i, sum);
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c)
+      if (inverse_mass[child[c]] > 0)
+        couplings.of_vertex(
+            child[c], [&](Index k, Real w) { sum += couplings.list[k].h.scaled(std::fabs(w)); });
+    lumped[i] = sum;
+    Mat3r block = diagonal[i];
+    if (coupled_first.size() > 0)
+      for (Index k = coupled_first[i]; k < coupled_first[i + 1]; ++k)
+        if (coupled_node[k] == i) block += coupled[k];
+    smoother[i] = smoother_of(block, mass[i]);
   }
 };
 
 struct FinishLevel {
   View<const Index> child_first, child;
-  FinishNode finish;
+  View<const Index> row_first;
+  View<const Real> mass;
+  View<const Mat3r> diagonal;
+  View<Mat3r> value, lumped, smoother;
   Index first;
 
   ICLOTH_HD void operator()(Index k) const {
     const Index i = first + k;
     Mat3r sum{};
-    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += finish.contact[child[c]];
-    finish(i, (1 / kOverestimate) * sum);
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += lumped[child[c]];
+    lumped[i] = (1 / kOverestimate) * sum;
+    Mat3r block = diagonal[i];
+    block += lumped[i];
+    value[row_first[i]] = block;
+    smoother[i] = smoother_of(block, mass[i]);
   }
 };
 
@@ -218,7 +221,7 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
   source_first_.upload(layout.source_first);
   source_.upload(layout.source);
   mass_.resize(layout.nodes());
-  for (Array<Mat3r>* a : {&diagonal_, &contact_, &smoother_}) a->resize(layout.nodes());
+  for (Array<Mat3r>* a : {&diagonal_, &lumped_, &smoother_}) a->resize(layout.nodes());
   for (Array<Vec3r>* a : {&b_, &z_, &t_}) a->resize(layout.nodes() + kPadding);
 }
 
@@ -241,17 +244,17 @@ void Hierarchy::fill_matrix(const SystemView& system) {
 }
 
 void Hierarchy::fill_contacts(const SystemView& system) {
-  const FinishNode finish{matrix_.row_first.view(), mass_.view(),    diagonal_.view(),
-                          matrix_.value.view(),     contact_.view(), smoother_.view()};
-  for (int l = 0; l < levels_; ++l) {
-    if (l == 0)
-      for_each("implicit.coarse_nodes", level_[l].count,
-               FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass,
-                                system.couplings, finish});
-    else
-      for_each("implicit.coarse_nodes", level_[l].count,
-               FinishLevel{child_first_.view(), child_.view(), finish, level_[l].first});
-  }
+  if (levels_ == 0) return;
+  coupled_.fill(system, group_.view(), level_[0].count);
+  for_each("implicit.coarse_nodes", level_[0].count,
+           FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass,
+                            system.couplings, coupled_.first(), coupled_.node(), coupled_.value(),
+                            mass_.view(), diagonal_.view(), lumped_.view(), smoother_.view()});
+  for (int l = 1; l < levels_; ++l)
+    for_each("implicit.coarse_nodes", level_[l].count,
+             FinishLevel{child_first_.view(), child_.view(), matrix_.row_first.view(), mass_.view(),
+                         diagonal_.view(), matrix_.value.view(), lumped_.view(), smoother_.view(),
+                         level_[l].first});
 }
 
 Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_diagonal) {
@@ -261,6 +264,8 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.group = group_.view();
   m.child_first = child_first_.view(), m.child = child_.view(), m.parent = parent_.view();
   m.matrix = matrix_.view();
+  m.coupled_first = coupled_.first(), m.coupled_node = coupled_.node();
+  m.coupled = coupled_.value();
   m.smoother = smoother_.view();
   m.b = b_.view(), m.z = z_.view(), m.t = t_.view();
   std::copy_n(level_, Multilevel::kMaxLevels, m.level);
@@ -273,6 +278,7 @@ double Hierarchy::bytes() const {
   const double blocks = matrix_.column.size(), nodes = matrix_.row_first.size();
   return 2 * blocks * (sizeof(Mat3r) + 3 * sizeof(Index)) +
          nodes * (12 * sizeof(Vec3r) + 3 * sizeof(Mat3r) + 8 * sizeof(Index)) +
+         2.0 * coupled_.value().size() * (sizeof(Mat3r) + sizeof(Index)) +
          static_cast<double>(group_.size()) * (3 * sizeof(Vec3r) + 2 * sizeof(Index));
 }
 

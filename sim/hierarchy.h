@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/multilevel.h"
-#include "sim/linear_system.h"
+#include "sim/coarse_couplings.h"
 
 namespace icloth::ICLOTH_BUILD {
 
@@ -15,7 +15,8 @@ class Hierarchy {
 
   /// Sums up the matrices of the levels without contacts: (A − M) / kOverestimate + M at each.
   void fill_matrix(const SystemView& system);
-  /// Adds the contacts' share of the diagonal blocks, in place of those of the call before.
+  /// Adds the couplings, in place of those of the call before: as they are on the finest level,
+  /// lumped on the diagonal blocks of the others.
   void fill_contacts(const SystemView& system);
 
   /// `inverse_diagonal`: of the finest matrix. Valid until the next call of a member.
@@ -37,10 +38,11 @@ class Hierarchy {
   BlockMatrix matrix_;
   /// What adds up to a block of matrix_: 2 × block of the finer level, + 1 where it is transposed.
   Array<Index> source_first_, source_;
-  Array<Real> mass_;       ///< of the free vertices (nodes), fill_matrix
-  Array<Mat3r> diagonal_;  ///< blocks without contacts (nodes), fill_matrix
-  Array<Mat3r> contact_;   ///< what contacts add to them (nodes), fill_contacts
-  Array<Mat3r> smoother_;  ///< see Multilevel (nodes), fill_contacts
+  Array<Real> mass_;         ///< of the free vertices (nodes), fill_matrix
+  Array<Mat3r> diagonal_;    ///< blocks without contacts (nodes), fill_matrix
+  CoarseCouplings coupled_;  ///< of the finest level, fill_contacts
+  Array<Mat3r> lumped_;      ///< couplings on each node (nodes), fill_contacts
+  Array<Mat3r> smoother_;    ///< see Multilevel (nodes), fill_contacts
   Array<Vec3r> b_, z_, t_;
 };
 

@@ -225,6 +225,74 @@ TEST(Multilevel, AllPrescribedIsNoWork) {
   EXPECT_EQ(sheets.solve(Preconditioner::multilevel).iterations, 0);
 }
 
+/// Σ h_c (Σ w over the node's free vertices)(Σ w over the other's), for each pair of nodes.
+TEST(CoarseCouplings, AreTheCouplingsSummedUpOverGroups) {
+  Sheets sheets(14, 3, 100, 90);
+  std::vector<Index> group;
+  for (Index i = 0; i < sheets.count; ++i) group.push_back(i / 5);
+  const Index nodes = group.back() + 1;
+  std::map<std::pair<Index, Index>, Mat3r> expected;
+  for (const Coupling& c : sheets.coupling_list)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b) {
+        const Index i = c.s.v[a], j = c.s.v[b];
+        if (i >= sheets.count || j >= sheets.count) continue;
+        if (!(sheets.inverse_mass[at(i)] > 0) || !(sheets.inverse_mass[at(j)] > 0)) continue;
+        expected[{group[at(i)], group[at(j)]}] += c.h.scaled(c.s.w[a] * c.s.w[b]);
+      }
+  Array<Index> groups;
+  groups.upload(group);
+  CoarseCouplings coupled;
+  coupled.fill(sheets.system(), groups.view(), nodes);
+  ASSERT_EQ(coupled.first().size(), nodes + 1);
+  ASSERT_EQ(coupled.node().size(), static_cast<Index>(expected.size()));
+  auto block = expected.begin();
+  for (Index i = 0; i < nodes; ++i)
+    for (Index k = coupled.first()[i]; k < coupled.first()[i + 1]; ++k, ++block) {
+      EXPECT_EQ(block->first, std::pair(i, coupled.node()[k]));
+      for (int e = 0; e < 9; ++e)
+        EXPECT_NEAR(coupled.value()[k].m[e], block->second.m[e], 1e-3) << i << ' ' << k;
+    }
+  EXPECT_TRUE(block == expected.end());
+}
+
+TEST(Couplings, AreTheActiveContactsWithTheirVertices) {
+  constexpr Index kVertices = 6;  // of the cloth; the last corner is an obstacle's
+  std::vector<Contact> contacts(5);
+  std::vector<ContactTerm> terms(5);
+  for (int c = 0; c < 5; ++c) {
+    contacts[at(c)].s = {{c, (c + 1) % 6, (c + 2) % 6, 7}, {1, Real(-0.5), Real(-0.25), Real(c)}};
+    terms[at(c)].active = c % 2;
+    terms[at(c)].h.m[0] = static_cast<Real>(c);
+    terms[at(c)].impulse = {static_cast<Real>(c), 0, 0};
+  }
+  Array<Contact> contact_array;
+  Array<ContactTerm> term_array;
+  contact_array.upload(contacts);
+  term_array.upload(terms);
+  Couplings couplings;
+  couplings.gather(contact_array.view(), term_array.view(), kVertices);
+  const CouplingView view = couplings.view();
+  ASSERT_EQ(view.size(), 2);
+  EXPECT_EQ(view.list[0].h.m[0], 1);
+  EXPECT_EQ(view.list[1].impulse.x, 3);
+  const std::vector<std::vector<std::pair<Index, Real>>> expected{{},
+                                                                  {{0, 1}},
+                                                                  {{0, Real(-0.5)}},
+                                                                  {{0, Real(-0.25)}, {1, 1}},
+                                                                  {{1, Real(-0.5)}},
+                                                                  {{1, Real(-0.25)}}};
+  for (Index i = 0; i < kVertices; ++i) {
+    std::vector<std::pair<Index, Real>> seen;
+    view.of_vertex(i, [&](Index c, Real w) { seen.emplace_back(c, w); });
+    EXPECT_EQ(seen, expected[at(i)]) << i;
+    EXPECT_EQ(view.touch(i), !seen.empty());
+  }
+  couplings.gather({}, {}, kVertices);
+  EXPECT_EQ(couplings.view().size(), 0);
+  EXPECT_FALSE(couplings.view().touch(1));
+}
+
 bool connected(const Graph& graph, const std::vector<Index>& members) {
   std::set<Index> left(members.begin(), members.end());
   std::vector<Index> queue{members.front()};

@@ -1,0 +1,98 @@
+#include "sim/coarse_couplings.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+std::uint64_t ICLOTH_HD key_of(Index row, Index column) {
+  return (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
+}
+Index ICLOTH_HD row_of(std::uint64_t key) { return static_cast<Index>(key >> 32); }
+Index ICLOTH_HD column_of(std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); }
+
+struct FindTerms {
+  View<const Coupling> couplings;
+  View<const Real> inverse_mass;
+  View<const Index> group;
+
+  template <class Emit>
+  ICLOTH_HD void operator()(Index c, Emit& emit) const {
+    const Stencil& s = couplings[c].s;
+    Index nodes[4];
+    Real weights[4];
+    int count = 0;
+    for (int a = 0; a < 4; ++a) {
+      const Index v = s.v[a];
+      if (v >= group.size() || !(inverse_mass[v] > 0)) continue;
+      int k = 0;
+      while (k < count && nodes[k] != group[v]) ++k;
+      if (k == count) nodes[count] = group[v], weights[count++] = 0;
+      weights[k] += s.w[a];
+    }
+    for (int a = 0; a < count; ++a)
+      for (int b = 0; b < count; ++b)
+        emit(CoarseTerm{key_of(nodes[a], nodes[b]), c, weights[a] * weights[b]});
+  }
+};
+
+struct StartsBlock {
+  View<const CoarseTerm> terms;
+  ICLOTH_HD bool operator()(Index i) const { return i == 0 || terms[i].key != terms[i - 1].key; }
+};
+
+struct SumBlock {
+  View<const CoarseTerm> terms;
+  View<const Index> starts;
+  View<const Coupling> couplings;
+  View<Index> node;
+  View<Mat3r> value;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index end = k + 1 < starts.size() ? starts[k + 1] : terms.size();
+    Mat3r sum{};
+    for (Index t = starts[k]; t < end; ++t)
+      sum += couplings[terms[t].coupling].h.scaled(terms[t].weight);
+    node[k] = column_of(terms[starts[k]].key);
+    value[k] = sum;
+  }
+};
+
+/// First block of row i, by bisection.
+struct FirstBlocks {
+  View<const CoarseTerm> terms;
+  View<const Index> starts;
+  View<Index> first;
+
+  ICLOTH_HD void operator()(Index i) const {
+    Index low = 0, high = starts.size();
+    while (low < high) {
+      const Index middle = low + (high - low) / 2;
+      if (row_of(terms[starts[middle]].key) < i)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    first[i] = low;
+  }
+};
+
+}  // namespace
+
+void CoarseCouplings::fill(const SystemView& system, View<const Index> group, Index nodes) {
+  const View<const Coupling> couplings = system.couplings.list;
+  first_.resize(0);
+  if (couplings.size() == 0) return;
+  collect("implicit.coarse_terms", couplings.size(),
+          FindTerms{couplings, system.inverse_mass, group}, found_);
+  terms_.resize(0);
+  append_sorted_("implicit.coarse_sort", found_, terms_);
+  compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
+  node_.resize(starts_.size());
+  value_.resize(starts_.size());
+  for_each("implicit.coarse_sums", starts_.size(),
+           SumBlock{terms_.view(), starts_.view(), couplings, node_.view(), value_.view()});
+  first_.resize(nodes + 1);
+  for_each("implicit.coarse_first", nodes + 1,
+           FirstBlocks{terms_.view(), starts_.view(), first_.view()});
+}
+
+}  // namespace icloth::ICLOTH_BUILD
