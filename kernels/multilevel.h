@@ -41,6 +41,20 @@ struct BlockJacobi {
   }
 };
 
+/// Blocks of full rows, the diagonal among them; no rows at all where `first` is empty.
+struct CoarseRows {
+  View<const Index> first;   ///< (rows + 1)
+  View<const Index> column;  ///< ascending in a row
+  View<const Mat3r> value;
+
+  /// f(column, block) for the blocks of a row; none beyond the last row.
+  template <class F>
+  ICLOTH_HD void of_row(Index i, const F& f) const {
+    if (i + 1 >= first.size()) return;
+    for (Index k = first[i]; k < first[i + 1]; ++k) f(column[k], value[k]);
+  }
+};
+
 /// The nodes of all levels are in one numbering, the finest level first.
 struct Multilevel {
   static constexpr int kMaxLevels = 8;
@@ -58,9 +72,7 @@ struct Multilevel {
   View<const Index> child;             ///< vertices of a node of the finest level, else nodes
   View<const Index> parent;            ///< of each node but the coarsest level's (nodes)
   MatrixView matrix;                   ///< of all levels: no block between two of them (nodes)
-  View<const Index> coupled_first;     ///< of the finest level, or none (nodes of it + 1)
-  View<const Index> coupled_node;      ///< columns of `coupled`
-  View<const Mat3r> coupled;           ///< what contacts add to the finest level, full rows
+  CoarseRows coupled;                  ///< what contacts add to the finest level
   View<const Mat3r> smoother;          ///< kDamping × inverse diagonal block (nodes)
   View<Vec3r> b, z, t;                 ///< right-hand side, correction, scratch (nodes)
   Level level[kMaxLevels];
@@ -88,9 +100,7 @@ struct Multilevel {
   /// Row i of the level's matrix times v.
   ICLOTH_HD Vec3r multiplied(Index i, View<const Vec3r> v) const {
     Vec3r sum = multiply_row(matrix, i, &v.data()->x);
-    if (i + 1 < coupled_first.size())
-      for (Index k = coupled_first[i]; k < coupled_first[i + 1]; ++k)
-        sum += coupled[k] * v[coupled_node[k]];
+    coupled.of_row(i, [&](Index j, const Mat3r& block) { sum += block * v[j]; });
     return sum;
   }
 

@@ -1,5 +1,7 @@
 #include "sim/coarse_couplings.h"
 
+#include "kernels/partition_point.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
@@ -43,7 +45,7 @@ struct SumBlock {
   View<const CoarseTerm> terms;
   View<const Index> starts;
   View<const Coupling> couplings;
-  View<Index> node;
+  View<Index> column;
   View<Mat3r> value;
 
   ICLOTH_HD void operator()(Index k) const {
@@ -51,27 +53,20 @@ struct SumBlock {
     Mat3r sum{};
     for (Index t = starts[k]; t < end; ++t)
       sum += couplings[terms[t].coupling].h.scaled(terms[t].weight);
-    node[k] = column_of(terms[starts[k]].key);
+    column[k] = column_of(terms[starts[k]].key);
     value[k] = sum;
   }
 };
 
-/// First block of row i, by bisection.
+/// First block of row i.
 struct FirstBlocks {
   View<const CoarseTerm> terms;
   View<const Index> starts;
   View<Index> first;
 
   ICLOTH_HD void operator()(Index i) const {
-    Index low = 0, high = starts.size();
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (row_of(terms[starts[middle]].key) < i)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    first[i] = low;
+    first[i] =
+        partition_point(starts.size(), [&](Index k) { return row_of(terms[starts[k]].key) < i; });
   }
 };
 
@@ -86,10 +81,10 @@ void CoarseCouplings::fill(const SystemView& system, View<const Index> group, In
   terms_.resize(0);
   append_sorted_("implicit.coarse_sort", found_, terms_);
   compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
-  node_.resize(starts_.size());
+  column_.resize(starts_.size());
   value_.resize(starts_.size());
   for_each("implicit.coarse_sums", starts_.size(),
-           SumBlock{terms_.view(), starts_.view(), couplings, node_.view(), value_.view()});
+           SumBlock{terms_.view(), starts_.view(), couplings, column_.view(), value_.view()});
   first_.resize(nodes + 1);
   for_each("implicit.coarse_first", nodes + 1,
            FirstBlocks{terms_.view(), starts_.view(), first_.view()});

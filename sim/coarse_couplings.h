@@ -3,13 +3,14 @@
 // would hold each of them in place.
 #pragma once
 
+#include "kernels/multilevel.h"
 #include "sim/linear_system.h"
 
 namespace icloth::ICLOTH_BUILD {
 
 /// One of the node pairs that a coupling adds weight × H to.
 struct CoarseTerm {
-  std::uint64_t key;  ///< row and column, see NodeKey
+  std::uint64_t key;  ///< row and column
   Index coupling;
   Real weight;
 };
@@ -19,17 +20,14 @@ class CoarseCouplings {
   /// group: node of each vertex (vertices).
   void fill(const SystemView& system, View<const Index> group, Index nodes);
 
-  /// Blocks of row i: first[i] … first[i + 1] − 1, columns ascending, the diagonal among them. No
-  /// rows at all without couplings.
-  View<const Index> first() const { return first_.view(); }
-  View<const Index> node() const { return node_.view(); }
-  View<const Mat3r> value() const { return value_.view(); }
+  /// No rows without couplings. Valid until the next fill.
+  CoarseRows rows() const { return {first_.view(), column_.view(), value_.view()}; }
 
  private:
   Array<CoarseTerm> found_, terms_;  ///< the latter sorted by key
   SortedAppend append_sorted_;
   Array<Index> starts_;  ///< first term of each block
-  Array<Index> first_, node_;
+  Array<Index> first_, column_;
   Array<Mat3r> value_;
 };
 

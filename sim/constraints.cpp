@@ -1,5 +1,7 @@
 #include "sim/constraints.h"
 
+#include "kernels/partition_point.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
@@ -17,21 +19,14 @@ struct CornerKeys {
   }
 };
 
-/// First entry of vertex i in the sorted keys, by bisection.
+/// First entry of vertex i in the sorted keys.
 struct FirstEntries {
   View<const std::uint64_t> keys;
   View<Index> first;
 
   ICLOTH_HD void operator()(Index i) const {
-    Index low = 0, high = keys.size();
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (keys[middle] < static_cast<std::uint64_t>(i))
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    first[i] = low;
+    first[i] = partition_point(keys.size(),
+                               [&](Index k) { return keys[k] < static_cast<std::uint64_t>(i); });
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/partition_point.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
@@ -131,15 +133,7 @@ struct CellView {
   View<const Index> element;
   Index first, last;
   ICLOTH_HD Index below(Index limit) const {
-    Index low = first, high = last;
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (element[middle] < limit)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low - first;
+    return partition_point(last - first, [&](Index k) { return element[first + k] < limit; });
   }
 };
 
@@ -222,14 +216,12 @@ struct TestItem {
 
   template <class Emit>
   ICLOTH_HD void operator()(Index item, Emit& emit) const {
-    Index low = 0, high = item_first.size() - 1;  // the last cell that starts at or before item
-    while (high - low > 1) {
-      const Index middle = low + (high - low) / 2;
-      (item_first[middle] <= item ? low : high) = middle;
-    }
-    const Index first = cell_first[low];
-    const auto cell = pairs.cell({element, first, cell_first[low + 1]});
-    const std::int64_t begin = static_cast<std::int64_t>(item - item_first[low]) * kTestsPerItem;
+    // The last cell that starts at or before the item.
+    const Index c =
+        partition_point(item_first.size() - 1, [&](Index k) { return item_first[k] <= item; }) - 1;
+    const Index first = cell_first[c];
+    const auto cell = pairs.cell({element, first, cell_first[c + 1]});
+    const std::int64_t begin = static_cast<std::int64_t>(item - item_first[c]) * kTestsPerItem;
     const std::int64_t all = pairs.tests(cell);
     const std::int64_t end = begin + kTestsPerItem < all ? begin + kTestsPerItem : all;
     for (std::int64_t t = begin; t < end; ++t) {

@@ -76,8 +76,7 @@ struct FinishFirstLevel {
   View<const Index> child_first, child;
   View<const Real> inverse_mass;
   CouplingView couplings;
-  View<const Index> coupled_first, coupled_node;  ///< see CoarseCouplings
-  View<const Mat3r> coupled;
+  CoarseRows coupled;
   View<const Real> mass;
   View<const Mat3r> diagonal;
   View<Mat3r> lumped, smoother;
@@ -91,9 +90,9 @@ struct FinishFirstLevel {
             child[c], [&](Index k, Real w) { sum += couplings.list[k].h.scaled(std::fabs(w)); });
     lumped[i] = sum;
     Mat3r block = diagonal[i];
-    if (coupled_first.size() > 0)
-      for (Index k = coupled_first[i]; k < coupled_first[i + 1]; ++k)
-        if (coupled_node[k] == i) block += coupled[k];
+    coupled.of_row(i, [&](Index j, const Mat3r& contacts) {
+      if (j == i) block += contacts;
+    });
     smoother[i] = smoother_of(block, mass[i]);
   }
 };
@@ -248,8 +247,8 @@ void Hierarchy::fill_contacts(const SystemView& system) {
   coupled_.fill(system, group_.view(), level_[0].count);
   for_each("implicit.coarse_nodes", level_[0].count,
            FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass,
-                            system.couplings, coupled_.first(), coupled_.node(), coupled_.value(),
-                            mass_.view(), diagonal_.view(), lumped_.view(), smoother_.view()});
+                            system.couplings, coupled_.rows(), mass_.view(), diagonal_.view(),
+                            lumped_.view(), smoother_.view()});
   for (int l = 1; l < levels_; ++l)
     for_each("implicit.coarse_nodes", level_[l].count,
              FinishLevel{child_first_.view(), child_.view(), matrix_.row_first.view(), mass_.view(),
@@ -264,8 +263,7 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.group = group_.view();
   m.child_first = child_first_.view(), m.child = child_.view(), m.parent = parent_.view();
   m.matrix = matrix_.view();
-  m.coupled_first = coupled_.first(), m.coupled_node = coupled_.node();
-  m.coupled = coupled_.value();
+  m.coupled = coupled_.rows();
   m.smoother = smoother_.view();
   m.b = b_.view(), m.z = z_.view(), m.t = t_.view();
   std::copy_n(level_, Multilevel::kMaxLevels, m.level);
@@ -278,7 +276,7 @@ double Hierarchy::bytes() const {
   const double blocks = matrix_.column.size(), nodes = matrix_.row_first.size();
   return 2 * blocks * (sizeof(Mat3r) + 3 * sizeof(Index)) +
          nodes * (12 * sizeof(Vec3r) + 3 * sizeof(Mat3r) + 8 * sizeof(Index)) +
-         2.0 * coupled_.value().size() * (sizeof(Mat3r) + sizeof(Index)) +
+         2.0 * coupled_.rows().value.size() * (sizeof(Mat3r) + sizeof(Index)) +
          static_cast<double>(group_.size()) * (3 * sizeof(Vec3r) + 2 * sizeof(Index));
 }
 

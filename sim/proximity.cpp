@@ -2,6 +2,7 @@
 
 #include "kernels/distance.h"
 #include "kernels/parallel.h"
+#include "kernels/partition_point.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -192,24 +193,17 @@ struct RampThickness {
   }
 };
 
-/// The force that a pair held at the end of the last substep, by bisection.
+/// The force that a pair held at the end of the last substep.
 struct RecallFriction {
   View<const HeldForce> held;
   View<Contact> contacts;
 
   ICLOTH_HD void operator()(Index i) const {
     Contact& c = contacts[i];
-    Index low = 0, high = held.size();
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (held[middle].key < c.key)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    if (low == held.size() || held[low].key != c.key) return;
-    c.held = tangential(c, held[low].force);
-    c.stuck = held[low].stuck;
+    const Index k = partition_point(held.size(), [&](Index h) { return held[h].key < c.key; });
+    if (k == held.size() || held[k].key != c.key) return;
+    c.held = tangential(c, held[k].force);
+    c.stuck = held[k].stuck;
   }
 };
 

@@ -244,16 +244,17 @@ TEST(CoarseCouplings, AreTheCouplingsSummedUpOverGroups) {
   groups.upload(group);
   CoarseCouplings coupled;
   coupled.fill(sheets.system(), groups.view(), nodes);
-  ASSERT_EQ(coupled.first().size(), nodes + 1);
-  ASSERT_EQ(coupled.node().size(), static_cast<Index>(expected.size()));
-  auto block = expected.begin();
+  const CoarseRows rows = coupled.rows();
+  ASSERT_EQ(rows.first.size(), nodes + 1);
+  ASSERT_EQ(rows.column.size(), static_cast<Index>(expected.size()));
+  auto pair = expected.begin();
   for (Index i = 0; i < nodes; ++i)
-    for (Index k = coupled.first()[i]; k < coupled.first()[i + 1]; ++k, ++block) {
-      EXPECT_EQ(block->first, std::pair(i, coupled.node()[k]));
-      for (int e = 0; e < 9; ++e)
-        EXPECT_NEAR(coupled.value()[k].m[e], block->second.m[e], 1e-3) << i << ' ' << k;
-    }
-  EXPECT_TRUE(block == expected.end());
+    rows.of_row(i, [&](Index j, const Mat3r& block) {
+      EXPECT_EQ(pair->first, std::pair(i, j));
+      for (int e = 0; e < 9; ++e) EXPECT_NEAR(block.m[e], pair->second.m[e], 1e-3) << i << ' ' << j;
+      ++pair;
+    });
+  EXPECT_TRUE(pair == expected.end());
 }
 
 TEST(Couplings, AreTheActiveContactsWithTheirVertices) {
