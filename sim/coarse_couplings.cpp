@@ -5,11 +5,11 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-std::uint64_t ICLOTH_HD key_of(Index row, Index column) {
+ICLOTH_HD std::uint64_t key_of(Index row, Index column) {
   return (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
 }
-Index ICLOTH_HD row_of(std::uint64_t key) { return static_cast<Index>(key >> 32); }
-Index ICLOTH_HD column_of(std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); }
+ICLOTH_HD Index row_of(std::uint64_t key) { return static_cast<Index>(key >> 32); }
+ICLOTH_HD Index column_of(std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); }
 
 struct FindTerms {
   View<const Coupling> couplings;

@@ -8,7 +8,7 @@
 namespace icloth {
 namespace {
 
-// Two-step steps lie on the fronts of all scenes; which length and tolerance is a matter of taste.
+// Points of bench accuracy, on or near the fronts (docs/accuracy.md says which).
 constexpr Preset::Setting kFast[] = {{"step.time_step", "0.02"},
                                      {"implicit.integrator", "bdf2"},
                                      {"implicit.cg_tolerance", "0.05"},

@@ -40,7 +40,7 @@ struct Measured {
   double ms() const { return ms_solve + ms_set_up; }
 };
 
-/// A step, or no more than its first solve, which starts from zero.
+/// A step, or no more than the first solve of each substep, which starts from zero.
 Measured measure(Frames& frames, const Snapshot& state, Preconditioner preconditioner,
                  bool first_solve) {
   Measured measured;
@@ -99,10 +99,10 @@ int run_solver(const BenchOptions& options) {
   report.heading("Preconditioners of the implicit step");
   report.text(
       "From the same states one step is taken with each preconditioner, to a relative residual of "
-      "1e-3: its first solve alone, which starts from zero, and all of it, whose further solves "
+      "1e-3: the first solve of each substep alone, which starts from zero, and all of them, which "
       "start from the one before. Times are sums over the solves of the step; the set-up is what "
-      "the preconditioner "
-      "needs for every system; faster: block-Jacobi's time divided by the row's.");
+      "the preconditioner needs for every system; faster: block-Jacobi's time divided by the "
+      "row's.");
   report.add(table);
   finish_report(options, report);
   return 0;
