@@ -15,6 +15,12 @@ struct ResidualSums {
   }
 };
 
+/// Squared lengths of the right-hand side and of the start.
+struct Lengths {
+  double bb, xx;
+  ICLOTH_HD friend Lengths operator+(Lengths a, Lengths b) { return {a.bb + b.bb, a.xx + b.xx}; }
+};
+
 /// The whole solve, for one team: every thread goes through the same iterations and has the same
 /// scalars, so that nothing has to be read back in between.
 template <class Preconditioner>
@@ -77,10 +83,14 @@ struct ConjugateGradients {
   template <class Team>
   ICLOTH_HD void operator()(Team& team) const {
     const Index n = b.size();
-    const double bb = team.reduce(
-        n, 0.0, [&](Index i) { return dot_double(b[i], b[i]); }, Sum{});
+    const Lengths lengths = team.reduce(
+        n, Lengths{0, 0},
+        [&](Index i) {
+          return Lengths{dot_double(b[i], b[i]), dot_double(x[i], x[i])};
+        },
+        Sum{});
     LinearSolution result;
-    if (bb != 0) result = iterate(team, bb);
+    if (lengths.bb != 0) result = iterate(team, lengths);
     // No numbers in, no numbers out: an x that merely stayed zero would pass for a solution.
     if (!(result.residual - result.residual == 0))
       team.for_each(n, [&](Index i) { x[i].x = static_cast<Real>(NAN); });
@@ -88,12 +98,16 @@ struct ConjugateGradients {
   }
 
   template <class Team>
-  ICLOTH_HD LinearSolution iterate(Team& team, double bb) const {
+  ICLOTH_HD LinearSolution iterate(Team& team, Lengths lengths) const {
     constexpr int kReplaceEvery = 50;  // iterations between true residuals
     constexpr int kPatience = 40;      // true residuals in a row without gain: rounding rules
     const Index n = b.size();
+    const double bb = lengths.bb;
     LinearSolution result;
-    multiply(team, x);
+    if (lengths.xx == 0)  // a product saved
+      team.for_each(n, [&](Index i) { q[i] = Vec3r{}; });
+    else
+      multiply(team, x);
     Dots dots = precondition(
         team, [&](Index i) { return true_residual(i); }, r, z);
     team.for_each(n, [&](Index i) { p[i] = z[i], best[i] = x[i]; });
