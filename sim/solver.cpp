@@ -313,11 +313,18 @@ Snapshot Solver::snapshot() const {
 }
 
 void Solver::restore(const Snapshot& snapshot) {
-  if (snapshot.positions.size() != static_cast<std::size_t>(mesh_.vertices) ||
-      snapshot.velocities.size() != snapshot.positions.size())
-    throw std::invalid_argument(
-        "snapshot of another scene: " + std::to_string(snapshot.positions.size()) +
-        " vertices, expected " + std::to_string(mesh_.vertices));
+  const auto require = [](const char* what, std::size_t given, Index expected) {
+    if (given != static_cast<std::size_t>(expected))
+      throw std::invalid_argument("snapshot of another scene: " + std::to_string(given) + " " +
+                                  what + ", expected " + std::to_string(expected));
+  };
+  require("positions", snapshot.positions.size(), mesh_.vertices);
+  require("velocities", snapshot.velocities.size(), mesh_.vertices);
+  if (snapshot.past_dt > 0) {
+    require("ways of the step before", snapshot.past_motion.size(), mesh_.cloth_vertices);
+    require("changes of velocity of the step before", snapshot.past_change.size(),
+            mesh_.cloth_vertices);
+  }
   use_device();
   step_index_ = snapshot.step;
   time_ = snapshot.time;
@@ -334,11 +341,8 @@ void Solver::restore(const Snapshot& snapshot) {
 }
 
 void Solver::restore_past(const Snapshot& snapshot) {
-  const auto cloth = static_cast<std::size_t>(mesh_.cloth_vertices);
   state_.past.forget();
-  if (!(snapshot.past_dt > 0) || snapshot.past_motion.size() != cloth ||
-      snapshot.past_change.size() != cloth)
-    return;
+  if (!(snapshot.past_dt > 0)) return;
   state_.past.dt = snapshot.past_dt;
   upload_as(state_.past.motion, snapshot.past_motion, to_real);
   upload_as(state_.past.change, snapshot.past_change, to_real);

@@ -234,6 +234,9 @@ TEST_P(Builds, TheTwoStepIntegratorHoldsTheClothAndGoesOnFromASnapshot) {
   const auto other = make(scene);
   other->restore(middle);
   for (int k = 0; k < 5; ++k) EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
+  Snapshot wrong = middle;
+  wrong.past_change.pop_back();
+  EXPECT_THROW(other->restore(wrong), std::invalid_argument);
   // Without its past it goes on as well, by a step of the first order.
   Snapshot afresh = middle;
   afresh.past_dt = 0;

@@ -148,7 +148,8 @@ Plot plot_of(const std::string& scene, const std::vector<Point>& points, const c
 
 class AccuracySuite {
  public:
-  AccuracySuite(Build build, Report& report) : build_(build), report_(report) {}
+  AccuracySuite(Build build, bool quiet, Report& report)
+      : build_(build), quiet_(quiet), report_(report) {}
 
   void run(const TrialScene& scene) {
     report_.heading(scene.name);
@@ -176,7 +177,7 @@ class AccuracySuite {
     constexpr int kRepeats = 2;
     std::vector<Point> points;
     std::vector<std::pair<double, double>> places;
-    Progress progress(scene.name, static_cast<long>(list.size()), false);
+    Progress progress(scene.name, static_cast<long>(list.size()), quiet_);
     for (const Setting& setting : list) {
       Point point{
           setting,
@@ -196,6 +197,7 @@ class AccuracySuite {
   }
 
   Build build_;
+  bool quiet_;
   Report& report_;
   bool clean_ = true;
 };
@@ -205,7 +207,7 @@ class AccuracySuite {
 int run_accuracy(const BenchOptions& options) {
   const Build build = only_build(options);
   Report report = begin_report(options, build);
-  AccuracySuite suite(build, report);
+  AccuracySuite suite(build, options.quiet, report);
   bool any = false;
   for (const TrialScene& scene : kScenes) {
     if (!chosen(options, scene.name)) continue;

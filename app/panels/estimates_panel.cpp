@@ -1,5 +1,6 @@
 // What the newest steps say about their own errors.
 #include "app/estimates.h"
+#include "app/panels/hover.h"
 #include "app/panels/panel.h"
 #include "app/theme.h"
 
@@ -8,12 +9,7 @@ namespace icloth {
 namespace {
 
 void tooltip(const std::string& text) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
-  ImGui::TextUnformatted(shown(text).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  over_item([&] { ImGui::TextUnformatted(shown(text).c_str()); });
 }
 
 }  // namespace

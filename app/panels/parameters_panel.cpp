@@ -1,6 +1,7 @@
 // Sliders made from the table of parameters: unit, range, scale and tooltips come from there.
 #include <cstdio>
 
+#include "app/panels/hover.h"
 #include "app/panels/panel.h"
 #include "app/theme.h"
 #include "sim/presets.h"
@@ -35,24 +36,21 @@ std::string number(double value) {
 }
 
 void explain(const ParameterInfo& info, const ParameterEdits& edits) {
-  if (!ImGui::IsItemHovered()) return;
-  const std::string unit = info.unit.empty() ? "" : " " + std::string(info.unit);
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-  ImGui::TextUnformatted(shown(info.label).c_str());
-  ImGui::TextDisabled("%s", std::string(info.name).c_str());
-  ImGui::Text("%s", shown("lower: " + std::string(info.lower)).c_str());
-  ImGui::Text("%s", shown("higher: " + std::string(info.higher)).c_str());
-  ImGui::TextDisabled("%s",
-                      shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
-                            ", in this scene " + number(edits.start_value(info)) + unit)
-                          .c_str());
-  if (!info.only_with.empty())
-    ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
-  ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
-  ImGui::TextDisabled("right click: reset; Ctrl+click: type a value");
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  over_item([&] {
+    const std::string unit = info.unit.empty() ? "" : " " + std::string(info.unit);
+    ImGui::TextUnformatted(shown(info.label).c_str());
+    ImGui::TextDisabled("%s", std::string(info.name).c_str());
+    ImGui::Text("%s", shown("lower: " + std::string(info.lower)).c_str());
+    ImGui::Text("%s", shown("higher: " + std::string(info.higher)).c_str());
+    ImGui::TextDisabled(
+        "%s", shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
+                    ", in this scene " + number(edits.start_value(info)) + unit)
+                  .c_str());
+    if (!info.only_with.empty())
+      ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
+    ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
+    ImGui::TextDisabled("right click: reset; Ctrl+click: type a value");
+  });
 }
 
 /// The menu of a right click.
@@ -133,14 +131,11 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
 }
 
 void explain_preset(const Preset& preset) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-  ImGui::TextUnformatted(shown(std::string(preset.figures)).c_str());
-  for (const auto& [key, value] : preset.settings)
-    ImGui::TextDisabled("%s = %s", std::string(key).c_str(), std::string(value).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  over_item([&] {
+    ImGui::TextUnformatted(shown(std::string(preset.figures)).c_str());
+    for (const auto& [key, value] : preset.settings)
+      ImGui::TextDisabled("%s = %s", std::string(key).c_str(), std::string(value).c_str());
+  });
 }
 
 /// Buttons that set several parameters at once; the one in force is lit.

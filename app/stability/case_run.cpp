@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "app/suite_case.h"
 #include "sim/error.h"
 #include "sim/intersections.h"
 #include "sim/mesh_io.h"
@@ -120,8 +120,7 @@ bool CaseRun::run_for(double seconds) {
 }
 
 void CaseRun::require(bool holds, const std::string& what) {
-  if (!holds && std::ranges::find(result_.failures, what) == result_.failures.end())
-    result_.failures.push_back(what);
+  note_failure(result_.failures, holds, what);
 }
 
 void CaseRun::require_input_error(const std::function<void()>& load,
@@ -152,17 +151,8 @@ CaseResult CaseRun::finish() {
 }
 
 CaseResult run_case(const Case& test, const Settings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
   CaseRun run(settings, test.name);
-  try {
-    test.run(run);
-  } catch (const std::exception& error) {
-    run.require(false, std::string("no exception (") + error.what() + ")");
-  }
-  CaseResult result = run.finish();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  result.seconds = taken.count();
-  return result;
+  return result_of(test, run);
 }
 
 }  // namespace icloth::stability

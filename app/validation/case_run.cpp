@@ -1,10 +1,11 @@
 #include "app/validation/case_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+
+#include "app/suite_case.h"
 
 namespace icloth::validation {
 
@@ -78,8 +79,7 @@ void CaseRun::bound(const std::string& what, double measured, double target) {
 }
 
 void CaseRun::require(bool holds, const std::string& what) {
-  if (!holds && std::ranges::find(result_.failures, what) == result_.failures.end())
-    result_.failures.push_back(what);
+  note_failure(result_.failures, holds, what);
 }
 
 std::string number(double value) {
@@ -96,17 +96,8 @@ bool runs_on(const Case& test, Build& build) {
 }
 
 CaseResult run_case(const Case& test, const Settings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
   CaseRun run(settings);
-  try {
-    test.run(run);
-  } catch (const std::exception& error) {
-    run.require(false, std::string("no exception (") + error.what() + ")");
-  }
-  CaseResult result = run.finish();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  result.seconds = taken.count();
-  return result;
+  return result_of(test, run);
 }
 
 }  // namespace icloth::validation
