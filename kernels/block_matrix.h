@@ -17,6 +17,10 @@ struct MatrixView {
   const Real* entries;  ///< 9 a block, row-major, readable kPadding blocks beyond the end
 };
 
+/// Blocks that a row asks for ahead of time: rows are too short for the processor to see by itself
+/// that the next ones follow on. Measured on 25 MB: 0 → 1.78, 40 → 1.21, 80 → 1.02, 192 → 1.3 ms.
+inline constexpr std::ptrdiff_t kBlocksAhead = 80;
+
 /// Row i of the product with a vector of 3 numbers a row, readable kPadding rows beyond its end;
 /// every stored block serves two rows.
 ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Real* numbers) {
@@ -24,6 +28,7 @@ ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Rea
   Lanes row0{}, row1{}, row2{}, columns{};
   for (Index k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) {
     const Real* m = matrix.entries + 9 * static_cast<std::ptrdiff_t>(k);
+    prefetch(m, 9 * kBlocksAhead);
     const Lanes v = load_lanes(numbers + 3 * static_cast<std::ptrdiff_t>(matrix.column[k]));
     row0 += load_lanes(m) * v;
     row1 += load_lanes(m + 3) * v;

@@ -1,6 +1,8 @@
 // Four numbers that are loaded, multiplied and added together: a vector register on the CPU.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "kernels/platform.h"
@@ -26,6 +28,16 @@ ICLOTH_HD inline Lanes& operator+=(Lanes& a, Lanes b) {
 // Written out because compilers drop a lane that is not used and then shuffle the other three.
 using Lanes = Real __attribute__((vector_size(4 * sizeof(Real))));
 #endif
+
+/// Asks for memory that is read soon, `ahead` numbers from `from`; beyond the end it does no harm.
+ICLOTH_HD inline void prefetch([[maybe_unused]] const Real* from,
+                               [[maybe_unused]] std::ptrdiff_t ahead) {
+#if !defined(__CUDACC__)
+  const auto address =
+      reinterpret_cast<std::uintptr_t>(from) + static_cast<std::uintptr_t>(ahead) * sizeof(Real);
+  __builtin_prefetch(reinterpret_cast<const void*>(address));
+#endif
+}
 
 /// Reads four numbers from any address.
 ICLOTH_HD inline Lanes load_lanes(const Real* from) {
