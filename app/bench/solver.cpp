@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "app/bench/frames.h"
 #include "app/bench/suite.h"
