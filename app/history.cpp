@@ -9,7 +9,8 @@ namespace {
 std::size_t size_of(const HistoryEntry& entry) {
   return sizeof(HistoryEntry) + entry.held.size() * sizeof(InputEvent) +
          (entry.snapshot.positions.capacity() + entry.snapshot.velocities.capacity()) *
-             sizeof(Vec3d);
+             sizeof(Vec3d) +
+         entry.snapshot.yarns.capacity() * sizeof(FaceYarns);
 }
 
 }  // namespace

@@ -49,21 +49,35 @@ ICLOTH_HD inline HingeAngle hinge_angle_of(const HingeRest& h, View<const Vec3r>
   return hinge_angle(xs);
 }
 
+/// Where a curvature is among the samples of a row: `along` of the way from `column` to the next.
+struct BendingPlace {
+  int column;
+  Real along;
+
+  ICLOTH_HD Real in(const Real row[5]) const {
+    return (1 - along) * row[column] + along * row[column + 1];
+  }
+};
+
+/// Beyond the last sample the stiffness stays as it is there. `curvature` without its sign: valley
+/// and mountain folds are equally stiff.
+ICLOTH_HD inline BendingPlace bending_place(const Fabric& fabric, Real curvature) {
+  const Real value =
+      fabric.measured ? std::fmin(curvature / fabric.bending_spacing, Real(4)) : Real(0);
+  const int column = value >= 3 ? 3 : static_cast<int>(value);
+  return {column, value - static_cast<Real>(column)};
+}
+
 /// Measured bending stiffness k_e [N·m]: linear between the curvature samples and the directions.
 ICLOTH_HD inline Real bending_stiffness(const Fabric& fabric, const HingeRest& hinge, Real theta) {
-  // The change of curvature, without its sign: valley and mountain folds are equally stiff.
-  const Real curvature = std::fabs(theta - hinge.angle) * hinge.length / hinge.area;
-  const Real value = fabric.measured ? std::fmin(Real(0.1) * curvature, Real(4)) : Real(0);
-  const int column = value >= 3 ? 3 : static_cast<int>(value);
-  const Real along = value - static_cast<Real>(column);
+  const BendingPlace place =
+      bending_place(fabric, std::fabs(theta - hinge.angle) * hinge.length / hinge.area);
   const Real angle = hinge.direction * Real(4 / 3.14159265358979323846);
   const int row = angle >= 1 ? 1 : 0;
   const Real turn = std::fmin(std::fmax(angle - static_cast<Real>(row), Real(0)), Real(1));
-  Real k[2];
-  for (int r = 0; r < 2; ++r)
-    k[r] =
-        (1 - along) * fabric.bending[row + r][column] + along * fabric.bending[row + r][column + 1];
-  return std::fmax((1 - turn) * k[0] + turn * k[1], Real(0));
+  const Real k =
+      (1 - turn) * place.in(fabric.bending[row]) + turn * place.in(fabric.bending[row + 1]);
+  return std::fmax(k, Real(0));
 }
 
 /// ½ c_b [N·m], the second derivative of the energy in θ; the softer side decides.

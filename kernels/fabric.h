@@ -32,7 +32,10 @@ struct Fabric {
   bool measured;
   Real limit_strain = 0;             ///< Green strain where it begins to harden; 0: never
   Real limit_stiffness = 0;          ///< largest extra stiffness beyond that [N/m]
-  Real bending_poisson = 0;          ///< for bending.h's plates
+  Real bending_spacing = 10;         ///< curvature between two samples of bending [1/m]
+  Real bending_poisson = 0;          ///< for plate.h
+  Real bending_friction = 0;         ///< HB, see yarn_friction.h [N]
+  Real shear_friction = 0;           ///< HG [N/m]
   const Stiffness* table = nullptr;  ///< stiffness at the nodes of StiffnessTable, or null
 };
 

@@ -35,20 +35,19 @@ ICLOTH_HD inline Sym2 plate_curvature(const PlateRest& plate, const Real angle[3
           w[3] * angle[0] + w[4] * angle[1] + w[5] * angle[2]};
 }
 
+/// √(Λ : Λ), the same in every direction of a fold.
+ICLOTH_HD inline Real curvature_size(Sym2 c) {
+  return std::sqrt(c.uu * c.uu + c.vv * c.vv + 2 * c.uv * c.uv);
+}
+
 /// Measured moduli at a curvature. The three directions of the data give D11, D22 and the sum
 /// D12 + 2 D33; the data do not tell those two apart: D12 = ν √(D11 D22) with ν from the fabric.
 /// D33 stays above a tenth of what an isotropic plate would have, which the data of large
 /// curvatures do not always do.
 ICLOTH_HD inline PlateModuli plate_moduli(const Fabric& fabric, Sym2 curvature) {
-  const Real size = std::sqrt(curvature.uu * curvature.uu + curvature.vv * curvature.vv +
-                              2 * curvature.uv * curvature.uv);
-  const Real value = fabric.measured ? std::fmin(Real(0.1) * size, Real(4)) : Real(0);
-  const int column = value >= 3 ? 3 : static_cast<int>(value);
-  const Real along = value - static_cast<Real>(column);
+  const BendingPlace place = bending_place(fabric, curvature_size(curvature));
   Real d[3];
-  for (int r = 0; r < 3; ++r)
-    d[r] = Real(0.25) *
-           ((1 - along) * fabric.bending[r][column] + along * fabric.bending[r][column + 1]);
+  for (int r = 0; r < 3; ++r) d[r] = Real(0.25) * place.in(fabric.bending[r]);
   const Real mean = std::sqrt(d[0] * d[2]);
   PlateModuli m;
   m.d11 = d[2], m.d22 = d[0];  // a hinge along u bends along v

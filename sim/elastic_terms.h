@@ -1,8 +1,8 @@
 // What one face (membrane, air) and one hinge (bending) add to the system of the implicit step.
 #pragma once
 
-#include "kernels/bending.h"
 #include "kernels/strain_limit.h"
+#include "kernels/yarn_friction.h"
 #include "sim/parameters.h"
 #include "sim/topology.h"
 
@@ -83,6 +83,7 @@ struct MembraneTerms {
   View<FaceTerm> term;
   Real damping_extra;
   Wind wind;
+  View<const YarnAnchor> yarns{};  ///< empty where no yarns rub
 
   ICLOTH_HD void operator()(Index i) const {
     const Int3 f = face[i];
@@ -101,9 +102,18 @@ struct MembraneTerms {
       corners(point.start, start);
       start_strain = green_strain(face_frame(start, inverse[i].m));
     }
-    const Stiffness k = stiffness_at(cloth, start_strain);
+    Stiffness k = stiffness_at(cloth, start_strain);
     const StrainLimit limit = strain_limit(cloth, g);
     Sym2 s = stress(k, g);
+    if (yarns.size() > 0 && cloth.shear_friction > 0) {
+      Vec3r end[3];
+      for (int a = 0; a < 3; ++a) end[a] = at[a] + point.ahead[f.v[a]];
+      const Real anchor = yarns[i].shear;
+      const Real friction =
+          shear_friction_stiffness(cloth, green_strain(face_frame(end, inverse[i].m)).uv - anchor);
+      s.uv += friction * (g.uv - anchor);
+      k.k33 += friction;
+    }
     if (limit.active) s = s + limit_stress(limit);
     const Sym2 positive = positive_part(s);
     const FaceFrame principal = limit.active ? principal_frame(frame, limit) : frame;

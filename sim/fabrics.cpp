@@ -32,7 +32,10 @@ Fabric make_fabric(const Material& material, const Parameters& p) {
       f.bending[row][c] = real(p.bend_scale * material.bending[row][c]);
   f.damping = real(material.damping);
   f.measured = material.law == Material::Law::measured;
+  f.bending_spacing = real(material.bending_spacing);
   f.bending_poisson = real(material.bending_poisson);
+  f.bending_friction = real(p.yarn_friction * p.bend_scale * material.bending_friction);
+  f.shear_friction = real(p.yarn_friction * p.stretch_scale * material.shear_friction);
   add_strain_limit(f, material, p);
   return f;
 }
@@ -41,8 +44,10 @@ bool bends(const Fabric& f) {
   for (const auto& row : f.bending)
     for (const Real k : row)
       if (k > 0) return true;
-  return false;
+  return f.bending_friction > 0;
 }
+
+bool rubs(const Fabric& f) { return f.bending_friction > 0 || f.shear_friction > 0; }
 
 }  // namespace
 
@@ -63,6 +68,7 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
   }
   mesh.fabric.upload(fabrics);
   mesh.bends = std::ranges::any_of(fabrics, bends);
+  mesh.yarns_rub = std::ranges::any_of(fabrics, rubs);
 }
 
 void upload_plates(Topology& mesh, const World& world) {

@@ -332,7 +332,7 @@ void Implicit::bend(StepContext& step, const Linearization& point) {
   for_each("implicit.plates", mesh.cloth_faces,
            PlateTerms{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
                       mesh.face_fabric.view(), mesh.fabric.view(), point, hinge_terms_.view(),
-                      plate_terms_.view(), damping_extra});
+                      plate_terms_.view(), damping_extra, step.state.yarns.view()});
   for_each("implicit.bending", mesh.hinge_count,
            GatherPlates{mesh.hinge_slots.view(), plate_terms_.view(), mesh.hinge.view(),
                         mesh.fabric.view(), point, hinge_terms_.view(), damping_extra});
@@ -348,7 +348,7 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
   for_each("implicit.membrane", mesh.cloth_faces,
            MembraneTerms{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
                          mesh.face_fabric.view(), mesh.fabric.view(), point, face_terms_.view(),
-                         damping_extra, wind_of(p)});
+                         damping_extra, wind_of(p), s.yarns.view()});
   bend(step, point);
   for_each("implicit.assemble", mesh.cloth_vertices,
            AssembleRow{matrix_.row_first.view(),

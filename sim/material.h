@@ -21,10 +21,14 @@ struct Material {
   /// Rows: at rest; then at 1/6 stretch along 0°, 22.5°, 45°, 67.5°, 90° from weft.
   /// Columns c11 c12 c22 c33 [N/m]; the stiffness that acts on Green strain is twice these.
   std::array<std::array<double, 4>, 6> stretching{};
-  /// Rows: hinge along 0°, 45°, 90°; columns: curvature samples 0…4 [N·m].
+  /// Rows: hinge along 0°, 45°, 90°; columns: curvature 0, 1, … 4 times bending_spacing [N·m].
   std::array<std::array<double, 5>, 3> bending{};
-  double bending_poisson = 0;  ///< of the plate model: D12 = ν √(D11 D22), in (−0.95, 0.95)
-  double strain_limit = 0;     ///< principal stretch − 1 where it begins to harden; 0: never
+  double bending_spacing = 10;  ///< [1/m], > 0; 10 as in ARCSim (docs/deviations.md)
+  double bending_poisson = 0;   ///< of the plate model: D12 = ν √(D11 D22), in (−0.95, 0.95)
+  /// What the yarns hold by friction (kernels/yarn_friction.h): a moment per width [N] and a shear
+  /// force per width [N/m], half the width 2HB and 2HG of the loops in the Kawabata tests; ≥ 0.
+  double bending_friction = 0, shear_friction = 0;
+  double strain_limit = 0;  ///< principal stretch − 1 where it begins to harden; 0: never
 };
 
 /// Constants of an orthotropic fabric as engineers give them.

@@ -76,6 +76,13 @@ void read_orthotropic(const JsonValue& value, Material& material) {
   set_orthotropic(material, f);
 }
 
+void read_yarn_friction(const JsonValue& value, Material& material) {
+  JsonObject object(value);
+  material.bending_friction = object.number("bending", 0, {0, 10});
+  material.shear_friction = object.number("shear", 0, {0, 1e6});
+  object.finish();
+}
+
 /// With the orthotropic law the row at rest is all there is, and is used as it stands.
 void check_orthotropic(const JsonValue& where, const Material& material) {
   const auto& row = material.stretching[0];
@@ -109,17 +116,21 @@ Material parse(const nlohmann::json& json, const std::string& where, const std::
   material.damping = object.number("damping", material.damping, {0, 10});
   const bool constants = object.has("orthotropic");
   if (constants) {
-    for (const char* key : {"law", "stretching", "bending", "bending_unit"})
+    for (const char* key : {"law", "stretching", "bending", "bending_unit", "bending_spacing"})
       if (object.has(key)) object[key].refuse("no such key beside \"orthotropic\"");
     read_orthotropic(object["orthotropic"], material);
   }
   if (object.has("stretching") || !(has_base || constants))
     read_stretching(object.required("stretching"), material);
   const double unit = object.number("bending_unit", 1, kPositive);
-  if (object.has("bending") || !(has_base || constants))
+  if (object.has("bending") || !(has_base || constants)) {
     read_bending(object.required("bending"), unit, material);
+    material.bending_spacing = Material{}.bending_spacing;  // not that of the base's samples
+  }
+  material.bending_spacing = object.number("bending_spacing", material.bending_spacing, {0.1, 1e4});
   material.bending_poisson =
       object.number("bending_poisson", material.bending_poisson, {-0.95, 0.95});
+  if (object.has("yarn_friction")) read_yarn_friction(object["yarn_friction"], material);
   material.strain_limit = object.number("strain_limit", material.strain_limit, {0, 10});
   check_orthotropic(object.value(), material);
   object.finish();

@@ -30,6 +30,7 @@ struct Parameters {
   // material
   double stretch_scale = 1.0;
   double bend_scale = 1.0;
+  double yarn_friction = 1.0;
   double density_scale = 1.0;
   double damping_extra = 0.0;
   double strain_limit = 0.0;

@@ -9,7 +9,6 @@
 // states of rest are exact; an oscillation faster than a few steps dies out a little later.
 #pragma once
 
-#include "kernels/plate.h"
 #include "sim/elastic_terms.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -55,6 +54,7 @@ struct PlateTerms {
   View<const HingeTerm> hinge_term;
   View<PlateTerm> term;
   Real damping_extra;
+  View<const YarnAnchor> yarns{};  ///< empty where no yarns rub
 
   ICLOTH_HD void operator()(Index i) const {
     const PlateRest& p = plate[i];
@@ -68,8 +68,15 @@ struct PlateTerms {
                                : hinge_term[h].k;
       end[a] = hinge_term[h].k + hinge_term[h].s;
     }
-    const PlateModuli m = plate_moduli(cloth, plate_curvature(p, start));
-    const Sym2 moment = plate_moment(m, plate_curvature(p, end));
+    const Sym2 curvature = plate_curvature(p, end);
+    PlateModuli m = plate_moduli(cloth, plate_curvature(p, start));
+    Sym2 moment = plate_moment(m, curvature);
+    if (yarns.size() > 0 && cloth.bending_friction > 0) {
+      const Sym2 away = curvature - yarns[i].curvature;
+      const PlateModuli friction = bending_friction_moduli(cloth, away);
+      moment = moment + plate_moment(friction, away);
+      m.d11 += friction.d11, m.d22 += friction.d22, m.d33 += friction.d33;
+    }
     const Real dt = point.dt, delay = dt + cloth.damping + damping_extra;
     PlateTerm t;
     plate_bound(plate_stiffness(p, m, area[i]), t.stiffness);

@@ -25,6 +25,13 @@ struct PairForce {
   bool stuck = false;      ///< it stuck, else it was sliding
 };
 
+/// Deformation of a face at which the friction of its yarns pulls nowhere, see
+/// kernels/yarn_friction.h.
+struct FaceYarns {
+  double curvature[3];  ///< uu, uv, vv [1/m]
+  double shear;         ///< Green strain G_uv
+};
+
 /// State of a simulation, enough to go on from. Positions hold all vertices (cloths in scene
 /// order, then obstacles), velocities likewise.
 struct Snapshot {
@@ -37,6 +44,7 @@ struct Snapshot {
   /// velocity in the last step [m], [m/s], and its length [s]; empty and 0 where there is none.
   std::vector<Vec3d> past_motion{}, past_change{};
   double past_dt = 0;
+  std::vector<FaceYarns> yarns{};  ///< (cloth faces), empty where no yarns rub
 };
 
 class Simulator {

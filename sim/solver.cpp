@@ -8,6 +8,7 @@
 #include "kernels/parallel.h"
 #include "sim/fabrics.h"
 #include "sim/statistics.h"
+#include "sim/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -135,7 +136,12 @@ void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
   upload_fabrics(mesh_, *scene_, parameters);
-  if (parameters.bending_model == BendingModel::plate && mesh_.bends) upload_plates(mesh_, world_);
+  const bool plates = mesh_.bends && parameters.bending_model == BendingModel::plate;
+  if (plates) upload_plates(mesh_, world_);
+  const Index rubbing = mesh_.yarns_rub ? mesh_.cloth_faces : 0;
+  if (state_.yarns.size() != rubbing || yarns_bend_ != plates)
+    ease_yarns(mesh_, parameters, state_);
+  yarns_bend_ = plates;
   if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
   pattern_bends_ = mesh_.bends;
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
@@ -154,6 +160,7 @@ void Solver::set_parameters(const Parameters& parameters) {
 
 void Solver::begin_substep(double start, double dt) {
   state_.x0.copy_from(state_.x1);
+  drag_yarns(mesh_, parameters_, state_);
   std::vector<Vec3d> end;
   std::vector<Vec3r> x1;
   for (const WorldObject& object : world_.objects) {
@@ -211,6 +218,7 @@ void Solver::save_start() {
   start_v_.copy_from(state_.v);
   start_held_.copy_from(proximity_.held());
   start_past_.copy_from(state_.past);
+  start_yarns_.copy_from(state_.yarns);
   work_ = 0;
   if (!energy_)
     energy_ = figures_of(mesh_, parameters_, state_.mass.view(), state_.x1.view(), state_.v.view())
@@ -222,6 +230,7 @@ void Solver::back_to_start() {
   state_.v.copy_from(start_v_);
   proximity_.held().copy_from(start_held_);
   state_.past.copy_from(start_past_);
+  state_.yarns.copy_from(start_yarns_);
   broad_phase_.invalidate();
 }
 
@@ -305,6 +314,11 @@ Snapshot Solver::snapshot() const {
   for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
   for (const HeldForce& held : proximity_.held().download())
     s.friction.push_back({held.key, convert<double>(held.force), held.stuck != 0});
+  for (const YarnAnchor& y : state_.yarns.download()) {
+    const auto number = [](Real v) { return static_cast<double>(v); };
+    s.yarns.push_back({{number(y.curvature.uu), number(y.curvature.uv), number(y.curvature.vv)},
+                       number(y.shear)});
+  }
   s.past_dt = state_.past.dt;
   if (!(s.past_dt > 0)) return s;
   for (const Vec3r& d : state_.past.motion.download()) s.past_motion.push_back(convert<double>(d));
@@ -325,6 +339,8 @@ void Solver::restore(const Snapshot& snapshot) {
     require("changes of velocity of the step before", snapshot.past_change.size(),
             mesh_.cloth_vertices);
   }
+  if (!snapshot.yarns.empty())
+    require("faces with friction of yarns", snapshot.yarns.size(), mesh_.cloth_faces);
   use_device();
   step_index_ = snapshot.step;
   time_ = snapshot.time;
@@ -335,6 +351,7 @@ void Solver::restore(const Snapshot& snapshot) {
     return HeldForce{held.pair, to_real(held.force), held.stuck ? 1 : 0};
   });
   restore_past(snapshot);
+  restore_yarns(snapshot);
   hands_.clear();
   broad_phase_.invalidate();
   energy_.reset();
@@ -346,6 +363,15 @@ void Solver::restore_past(const Snapshot& snapshot) {
   state_.past.dt = snapshot.past_dt;
   upload_as(state_.past.motion, snapshot.past_motion, to_real);
   upload_as(state_.past.change, snapshot.past_change, to_real);
+}
+
+/// Of a state without anchors, or by a solver in which no yarns rub: at ease.
+void Solver::restore_yarns(const Snapshot& snapshot) {
+  if (snapshot.yarns.empty() || !mesh_.yarns_rub) return ease_yarns(mesh_, parameters_, state_);
+  upload_as(state_.yarns, snapshot.yarns, [](const FaceYarns& y) {
+    return YarnAnchor{{real(y.curvature[0]), real(y.curvature[1]), real(y.curvature[2])},
+                      real(y.shear)};
+  });
 }
 
 std::vector<HandleState> Solver::handles() const {

@@ -57,6 +57,7 @@ class Solver final : public Simulator {
   void save_start();
   void back_to_start();
   void restore_past(const Snapshot& snapshot);
+  void restore_yarns(const Snapshot& snapshot);
   std::vector<Vec3d> cloth_positions() const;
   std::vector<Vec3d> watched_positions() const;  ///< of the vertices that hands_ watches
 
@@ -69,6 +70,8 @@ class Solver final : public Simulator {
   Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
   Array<HeldForce> start_held_;     ///< likewise
   Past start_past_;                 ///< likewise
+  Array<YarnAnchor> start_yarns_;   ///< likewise
+  bool yarns_bend_ = false;         ///< whether state_.yarns know curvatures, set_parameters
   Hands hands_;
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions

@@ -30,6 +30,8 @@ struct State {
   Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
 
+  Array<YarnAnchor> yarns;  ///< (cloth_faces), empty where no yarns rub; drag_yarns
+
   Past past;
 };
 

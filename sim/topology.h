@@ -1,8 +1,8 @@
 // The scene in the memory of the device: constant during a simulation.
 #pragma once
 
-#include "kernels/plate.h"
 #include "kernels/stencil.h"
+#include "kernels/yarn_friction.h"
 #include "sim/world.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -27,6 +27,7 @@ struct Topology {
   Array<Fabric> fabric;      ///< one a cloth
   Array<Index> face_fabric;  ///< (cloth_faces)
   bool bends = false;        ///< whether any fabric resists bending
+  bool yarns_rub = false;    ///< whether any fabric has friction between its yarns
 
   /// With material.bending=plate alone.
   Array<PlateRest> plate;         ///< (cloth_faces)

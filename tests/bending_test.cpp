@@ -259,8 +259,9 @@ TEST(Plate, MeasuredModuliAreThoseOfTheDataInTheirDirections) {
   fabric.measured = true;
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 5; ++c) fabric.bending[r][c] = 10 + r + 2 * c;
-  // Curvature 15 /m is half way between the second and third sample; 100 is beyond the last.
-  for (const auto& [size, sample] : {std::pair{0.0, 0.0}, {15.0, 1.5}, {100.0, 4.0}}) {
+  fabric.bending_spacing = 20;
+  // Curvature 30 /m is half way between the second and third sample; 100 is beyond the last.
+  for (const auto& [size, sample] : {std::pair{0.0, 0.0}, {30.0, 1.5}, {100.0, 4.0}}) {
     for (const double degrees : {0.0, 45.0, 90.0}) {
       const double c = std::cos(degrees * std::numbers::pi / 180),
                    s = std::sin(degrees * std::numbers::pi / 180);
@@ -281,7 +282,8 @@ TEST(Plate, ModuliStayPositiveForEveryFabricAndCurvature) {
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 5; ++c) fabric.bending[r][c] = material.bending[r][c];
     fabric.measured = true;
-    for (double curvature = 0; curvature < 60; curvature += 2.5) {
+    fabric.bending_spacing = material.bending_spacing;
+    for (double curvature = 0; curvature < 120; curvature += 5) {
       const PlateModuli m = plate_moduli(fabric, {curvature, 0, 0});
       EXPECT_GT(m.d33, 0) << name << " at " << curvature;
       EXPECT_GT(m.d11 * m.d22, m.d12 * m.d12) << name;

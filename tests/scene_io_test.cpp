@@ -179,8 +179,13 @@ TEST(SceneIo, AllShippedMaterialsLoad) {
     const Material material = load_material(name, "");
     EXPECT_EQ(material.name, name);
     EXPECT_GT(material.density, 0.1);
+    EXPECT_EQ(material.bending_spacing, 20);
   }
+  const Material denim = load_material("11oz-black-denim", "");
+  EXPECT_EQ(denim.bending_friction, 1.05e-3);
+  EXPECT_EQ(denim.shear_friction, 2.9);
   const Material shirt = load_material("default", "");
+  EXPECT_EQ(shirt.bending_friction, 0);
   EXPECT_EQ(shirt.density, 0.187);
   EXPECT_EQ(shirt.stretching[4][3], -174.43853);
   EXPECT_NEAR(shirt.bending[1][4], 8.860165e-6, 1e-15);

@@ -244,6 +244,88 @@ TEST_P(Builds, TheTwoStepIntegratorHoldsTheClothAndGoesOnFromASnapshot) {
   run_cleanly(*other, 5);
 }
 
+/// Denim, whose yarns rub.
+std::shared_ptr<Scene> denim_scene(Index triangles) {
+  auto scene = ball_scene(triangles);
+  scene->cloths[0].material = load_material("11oz-black-denim", "");
+  return scene;
+}
+
+bool same_yarns(const Snapshot& a, const Snapshot& b) {
+  return std::ranges::equal(a.yarns, b.yarns, [](const FaceYarns& x, const FaceYarns& y) {
+    return std::ranges::equal(x.curvature, y.curvature) && x.shear == y.shear;
+  });
+}
+
+TEST_P(Builds, RubbingYarnsGoOnFromASnapshotAndAreRefusedWithTheirStep) {
+  const auto scene = denim_scene(150);
+  const auto simulator = make(scene);
+  run_cleanly(*simulator, 20);
+  const Snapshot middle = simulator->snapshot();
+  ASSERT_EQ(middle.yarns.size(), scene->cloths[0].mesh.faces.size());
+  const auto other = make(scene);
+  other->restore(middle);
+  EXPECT_TRUE(same_yarns(other->snapshot(), middle));
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
+
+  Parameters wrong = other->parameters();
+  wrong.gravity_y = std::numeric_limits<double>::quiet_NaN();
+  other->set_parameters(wrong);
+  const Snapshot before = other->snapshot();
+  EXPECT_FALSE(other->step({}).accepted);
+  EXPECT_TRUE(same_yarns(other->snapshot(), before));
+
+  Snapshot of_another = middle;
+  of_another.yarns.pop_back();
+  EXPECT_THROW(other->restore(of_another), std::invalid_argument);
+  // Without its yarns it goes on as well, from where they are at ease.
+  Snapshot eased = middle;
+  eased.yarns.clear();
+  other->restore(eased);
+  EXPECT_EQ(other->snapshot().yarns.size(), middle.yarns.size());
+  EXPECT_FALSE(same_yarns(other->snapshot(), middle));
+}
+
+TEST_P(Builds, FrictionOfYarnsCanBeSwitchedAndOffIsNotThere) {
+  auto elastic = denim_scene(150);
+  Material& plain = elastic->cloths[0].material;
+  plain.bending_friction = plain.shear_friction = 0;
+  const auto simulator = make(denim_scene(150)), other = make(elastic);
+  Parameters off = simulator->parameters();
+  off.yarn_friction = 0;
+  simulator->set_parameters(off);
+  EXPECT_TRUE(simulator->snapshot().yarns.empty());
+  for (int k = 0; k < 20; ++k)
+    EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
+  // Single hinges know no curvature of a face: shear alone rubs, and bending where it comes back.
+  for (const BendingModel model : {BendingModel::hinge, BendingModel::plate}) {
+    Parameters on = off;
+    on.yarn_friction = 1;
+    on.bending_model = model;
+    simulator->set_parameters(on);
+    double bent = 0;
+    for (const FaceYarns& y : simulator->snapshot().yarns) bent += std::fabs(y.curvature[0]);
+    EXPECT_EQ(bent > 0, model == BendingModel::plate);
+    run_cleanly(*simulator, 5);
+  }
+}
+
+TEST_P(Builds, YarnsThatRubAHundredTimesAsHardHoldTheClothUp) {
+  auto scene = denim_scene(150);
+  const auto drop = [&](double friction) {
+    scene->parameters.yarn_friction = friction;
+    const auto simulator = make(std::make_shared<Scene>(*scene));
+    run_cleanly(*simulator, 60);
+    double lowest = 1;
+    for (std::size_t i = 0; i < scene->cloths[0].mesh.positions.size(); ++i)
+      lowest = std::min(lowest, simulator->snapshot().positions[i].y);
+    return 0.112 - lowest;
+  };
+  const double elastic = drop(0), stiff = drop(100);
+  EXPECT_GT(elastic, 0.1);
+  EXPECT_LT(stiff, 0.5 * elastic);
+}
+
 TEST_P(Builds, AGrabbedSheetFollowsTheHandUntilReleased) {
   auto scene = new_scene();
   scene->cloths.push_back(make_sheet(lying(0.2, 100), {}));

@@ -20,6 +20,7 @@ constexpr Case kCases[] = {
 
     {"cantilever", "heavy elastica; Romero et al. 2021, test 1", true, cantilever},
     {"lateral buckling", "Timoshenko and Gere; Romero et al. 2021, test 3", true, lateral_buckling},
+    {"friction of yarns", "slider beside a spring: HB/D, HG/G", true, friction_of_yarns},
 
     {"incline on a body", "Coulomb: at rest iff tan a <= mu", false, threshold_on_body},
     {"incline on cloth", "Coulomb: at rest iff tan a <= mu", false, threshold_on_cloth},

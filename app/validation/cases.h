@@ -23,6 +23,9 @@ void string_frequencies(CaseRun& run);
 void cantilever(CaseRun& run);
 void lateral_buckling(CaseRun& run);
 
+// cases_yarns.cpp: friction between yarns
+void friction_of_yarns(CaseRun& run);
+
 // cases_friction.cpp: Coulomb's law on a plane
 void threshold_on_body(CaseRun& run);
 void threshold_on_cloth(CaseRun& run);
