@@ -21,7 +21,7 @@ struct YarnAnchor {
 };
 
 /// How far from the anchor the yarns begin to slip: own choice, a twenty-fifth of the curvature and
-/// a thirtieth of the angle that the Kawabata tests go to (docs/deviations.md has others).
+/// a fourteenth of the angle that the Kawabata tests go to (docs/deviations.md has others).
 inline constexpr Real kCurvatureSlip = 10;       ///< [1/m]
 inline constexpr Real kShearSlip = Real(0.005);  ///< G_uv; half the angle
 
