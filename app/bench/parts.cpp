@@ -40,6 +40,11 @@ std::vector<Part> parts(const Scene& whole) {
          s.cloths = {cloths[2], cloths[1]};
        }},
       {"third sheet", [cloths](Scene& s) { s.cloths = cloths; }},
+      {"friction of yarns, like denim's",
+       [](Scene& s) {
+         for (Cloth& cloth : s.cloths)
+           cloth.material.bending_friction = 1e-3, cloth.material.shear_friction = 3;
+       }},
   };
 }
 
