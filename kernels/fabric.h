@@ -23,6 +23,9 @@ struct Sym2 {
 ICLOTH_HD constexpr Sym2 operator+(Sym2 a, Sym2 b) {
   return {a.uu + b.uu, a.uv + b.uv, a.vv + b.vv};
 }
+ICLOTH_HD constexpr Sym2 operator-(Sym2 a, Sym2 b) {
+  return {a.uu - b.uu, a.uv - b.uv, a.vv - b.vv};
+}
 
 /// Fabric as the kernels see it; see sim/material.h.
 struct Fabric {

@@ -28,6 +28,15 @@ struct PlateModuli {
   Real d11, d22, d12, d33;
 };
 
+/// Angles of the three hinges beyond those at rest, 0 at a border.
+ICLOTH_HD inline void plate_angles(const PlateRest& plate, View<const HingeRest> hinge,
+                                   View<const Vec3r> x, Real angle[3]) {
+  for (int slot = 0; slot < 3; ++slot) {
+    const Index h = plate.hinge[slot];
+    angle[slot] = h < 0 ? Real(0) : hinge_angle_of(hinge[h], x).theta - hinge[h].angle;
+  }
+}
+
 ICLOTH_HD inline Sym2 plate_curvature(const PlateRest& plate, const Real angle[3]) {
   const Real* w = plate.w;
   return {w[0] * angle[0] + w[1] * angle[1] + w[2] * angle[2],

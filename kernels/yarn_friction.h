@@ -14,7 +14,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Deformation at which the friction of a face pulls nowhere.
+/// How a face is deformed; of its yarns, where their friction pulls nowhere.
 struct YarnAnchor {
   Sym2 curvature;  ///< [1/m]
   Real shear;      ///< Green strain G_uv
@@ -24,8 +24,6 @@ struct YarnAnchor {
 /// a fourteenth of the angle that the Kawabata tests go to (docs/deviations.md has others).
 inline constexpr Real kCurvatureSlip = 10;       ///< [1/m]
 inline constexpr Real kShearSlip = Real(0.005);  ///< G_uv; half the angle
-
-ICLOTH_HD inline Sym2 operator-(Sym2 a, Sym2 b) { return {a.uu - b.uu, a.uv - b.uv, a.vv - b.vv}; }
 
 /// Share of the way from the anchor that exceeds the slip, for a distance from it.
 ICLOTH_HD inline Real yarn_excess(Real distance, Real slip) {
@@ -52,6 +50,17 @@ ICLOTH_HD inline PlateModuli bending_friction_moduli(const Fabric& fabric, Sym2 
 /// Stress S_uv of the friction over its strain G_uv away from the anchor [N/m].
 ICLOTH_HD inline Real shear_friction_stiffness(const Fabric& fabric, Real away) {
   return fabric.shear_friction / std::fmax(std::fabs(away), kShearSlip);
+}
+
+/// Work per area of the friction on a face that comes from `start` to `end` [J/m²].
+ICLOTH_HD inline Real yarn_work_density(const Fabric& fabric, const YarnAnchor& anchor,
+                                        const YarnAnchor& start, const YarnAnchor& end) {
+  const Sym2 away = end.curvature - anchor.curvature, bent = end.curvature - start.curvature;
+  const Sym2 moment = plate_moment(bending_friction_moduli(fabric, away), away);
+  const Real shear = end.shear - anchor.shear;
+  const Real stress = shear_friction_stiffness(fabric, shear) * shear;
+  return -(moment.uu * bent.uu + moment.vv * bent.vv + moment.uv * bent.uv) -
+         2 * stress * (end.shear - start.shear);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -11,7 +11,7 @@ namespace {
 // Points of bench accuracy, on or near the fronts (docs/accuracy.md says which).
 constexpr Preset::Setting kFast[] = {{"step.time_step", "0.02"},
                                      {"implicit.integrator", "backward_euler"},
-                                     {"implicit.cg_tolerance", "0.05"},
+                                     {"implicit.cg_tolerance", "0.02"},
                                      {"implicit.newton_iterations", "3"}};
 constexpr Preset::Setting kNormal[] = {{"step.time_step", "0.01"},
                                        {"implicit.integrator", "bdf2"},

@@ -183,7 +183,7 @@ void Solver::accept_substep(StepReport& report, double dt) {
         std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
   implicit_.end(state_);
-  work_ += implicit_.work();
+  work_ += implicit_.work() + yarn_work(mesh_, parameters_, state_);
   if (impact_zones_.corrected()) work_ += zone_work(dt);
 }
 

@@ -61,12 +61,8 @@ struct PlateEnergy {
 
   ICLOTH_HD double operator()(Index i) const {
     const PlateRest& p = plate[i];
-    Real angle[3] = {0, 0, 0};
-    for (int slot = 0; slot < 3; ++slot) {
-      if (p.hinge[slot] < 0) continue;
-      const HingeRest& h = hinge[p.hinge[slot]];
-      angle[slot] = hinge_angle_of(h, x).theta - h.angle;
-    }
+    Real angle[3];
+    plate_angles(p, hinge, x, angle);
     const Sym2 c = plate_curvature(p, angle);
     return static_cast<double>(area[i] * plate_energy(plate_moduli(fabric[face_fabric[i]], c), c));
   }

@@ -18,10 +18,8 @@ struct FaceDeformation {
     const Vec3r corner[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
     YarnAnchor out{{0, 0, 0}, green_strain(face_frame(corner, inverse[i].m)).uv};
     if (plate.size() == 0) return out;
-    Real angle[3] = {0, 0, 0};
-    for (int a = 0; a < 3; ++a)
-      if (const Index h = plate[i].hinge[a]; h >= 0)
-        angle[a] = hinge_angle_of(hinge[h], x).theta - hinge[h].angle;
+    Real angle[3];
+    plate_angles(plate[i], hinge, x, angle);
     out.curvature = plate_curvature(plate[i], angle);
     return out;
   }
@@ -39,23 +37,44 @@ struct DragYarns {
   ICLOTH_HD void operator()(Index i) const { anchor[i] = dragged(anchor[i], deformation(i)); }
 };
 
-FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, const State& state) {
+struct YarnWork {
+  FaceDeformation start, end;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const YarnAnchor> anchor;
+  ICLOTH_HD double operator()(Index i) const {
+    return static_cast<double>(
+        area[i] * yarn_work_density(fabric[face_fabric[i]], anchor[i], start(i), end(i)));
+  }
+};
+
+FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, View<const Vec3r> x) {
   const bool plates = mesh.bends && p.bending_model == BendingModel::plate;
   return {mesh.face.view(), mesh.face_inverse.view(),
-          plates ? mesh.plate.view() : View<const PlateRest>{}, mesh.hinge.view(), state.x1.view()};
+          plates ? mesh.plate.view() : View<const PlateRest>{}, mesh.hinge.view(), x};
 }
 
 }  // namespace
 
 void drag_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
   for_each("step.drag_yarns", state.yarns.size(),
-           DragYarns{deformation_of(mesh, parameters, state), state.yarns.view()});
+           DragYarns{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
 }
 
 void ease_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
   state.yarns.resize(mesh.yarns_rub ? mesh.cloth_faces : 0);
   for_each("step.ease_yarns", state.yarns.size(),
-           EaseYarns{deformation_of(mesh, parameters, state), state.yarns.view()});
+           EaseYarns{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
+}
+
+double yarn_work(const Topology& mesh, const Parameters& parameters, const State& state) {
+  return reduce(
+      "step.yarn_work", state.yarns.size(), 0.0,
+      YarnWork{deformation_of(mesh, parameters, state.x0.view()),
+               deformation_of(mesh, parameters, state.candidate.view()), mesh.face_area.view(),
+               mesh.face_fabric.view(), mesh.fabric.view(), state.yarns.view()},
+      Sum{});
 }
 
 }  // namespace icloth::ICLOTH_BUILD

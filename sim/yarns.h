@@ -13,4 +13,7 @@ void drag_yarns(const Topology& mesh, const Parameters& parameters, State& state
 /// Anchors at the shape x1, where no friction acts; none for fabrics whose yarns do not rub.
 void ease_yarns(const Topology& mesh, const Parameters& parameters, State& state);
 
+/// Work of the friction on the cloth from x0 to the candidate [J].
+double yarn_work(const Topology& mesh, const Parameters& parameters, const State& state);
+
 }  // namespace icloth::ICLOTH_BUILD

@@ -117,6 +117,22 @@ TEST(YarnFriction, SmallDeformationsAreElastic) {
   }
 }
 
+TEST(YarnFriction, WorkIsWhatTheLoopsLose) {
+  const double most = 100, shear = 5e-4;  // at the same time
+  double work = 0;
+  YarnAnchor anchor{{0, 0, 0}, 0}, before = anchor;
+  const std::vector<double> path = loop(most);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const YarnAnchor now{fold(path[i], 30), shear * path[i]};
+    if (i > path.size() / 5) work += yarn_work_density(rubbing(), anchor, before, now);
+    anchor = dragged(anchor, now);
+    before = now;
+  }
+  const double lost =
+      4 * kBending * (most - kCurvatureSlip) + 2 * 4 * kShear * (shear * most - kShearSlip);
+  EXPECT_NEAR(work, -lost, 2e-2 * lost);
+}
+
 TEST(YarnFriction, NeverPullsHarderThanTheYarnsHold) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-200, 200);

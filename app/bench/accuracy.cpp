@@ -75,7 +75,7 @@ std::vector<Setting> combinations() {
   std::vector<Setting> list;
   for (const char* integrator : {"backward_euler", "bdf2"})
     for (const char* dt : {"0.02", "0.01", "0.005"})
-      for (const char* tolerance : {"0.05", "0.01", "0.001"})
+      for (const char* tolerance : {"0.05", "0.02", "0.01", "0.001"})
         for (const char* newton : {"1", "3"})
           list.push_back(
               {"combination",
