@@ -12,7 +12,7 @@ namespace {
 constexpr Preset::Setting kFast[] = {{"step.time_step", "0.02"},
                                      {"implicit.integrator", "backward_euler"},
                                      {"implicit.cg_tolerance", "0.02"},
-                                     {"implicit.newton_iterations", "3"}};
+                                     {"implicit.newton_iterations", "5"}};
 constexpr Preset::Setting kNormal[] = {{"step.time_step", "0.01"},
                                        {"implicit.integrator", "bdf2"},
                                        {"implicit.cg_tolerance", "0.01"},
