@@ -24,17 +24,17 @@ constexpr Preset::Setting kAccurate[] = {{"step.time_step", "0.0025"},
 
 constexpr Preset kPresets[] = {
     {"fast", "Fast", kFast,
-     "For looking: 1.3 (flag) to 2.6 times (sphere) as fast as the built-in scenes' own settings. "
-     "Vertices are 41 mm (flag) and 15 mm (sphere) from a reference with a step of 1/1600 s, "
-     "energies 30 and 21 %; with the scenes' own settings 27 and 10 mm, 13 and 18 %."},
+     "For looking: 1.3 (flag) to 2.3 times (sphere) as fast as the built-in scenes' own settings. "
+     "Vertices are 33 mm (flag) and 15 mm (sphere) from a reference with a step of 1/1600 s, "
+     "energies 20 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
     {"normal", "Normal", kNormal,
      "1.0 (flag) to 1.5 times (sphere) as fast as the built-in scenes' own settings, and nearer "
-     "to a reference with a step of 1/1600 s: vertices are 22 mm (flag) and 7 mm (sphere) away, "
-     "energies 13 and 7 %. With the scenes' own settings: 27 and 10 mm, 13 and 18 %."},
+     "to a reference with a step of 1/1600 s: vertices are 22 mm (flag) and 6 mm (sphere) away, "
+     "energies 13 and 7 %. With the scenes' own settings: 27 and 9 mm, 13 and 18 %."},
     {"accurate", "Accurate", kAccurate,
      "For measuring: a third (flag) to a half (sphere) as fast as the built-in scenes' own "
      "settings. Vertices are 6 mm (flag) and 2 mm (sphere) from a reference with a step of "
-     "1/1600 s, energies 2 %; with the scenes' own settings 27 and 10 mm, 13 and 18 %."},
+     "1/1600 s, energies 2 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
 };
 
 }  // namespace
