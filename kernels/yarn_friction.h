@@ -3,9 +3,9 @@
 //
 // In each face one spring on the curvature and one on the shear strain, both of which slip where
 // they reach what the yarns hold: half the width of the hysteresis loops of the Kawabata tests,
-// HB = 2HB/2 and HG = 2HG/2 (Grosberg 1966; internal friction in simulated cloth: Miguel et al.
-// 2013, "Modeling and estimation of internal friction in cloth"). Each spring remembers its anchor,
-// the deformation at which it is slack.
+// HB = 2HB/2 and HG = 2HG/2, or 2HG5/2 where the loop is wider at large angles (Grosberg 1966;
+// internal friction in simulated cloth: Miguel et al. 2013, "Modeling and estimation of internal
+// friction in cloth"). Each spring remembers its anchor, the deformation at which it is slack.
 //
 //   moment = HB · away / max(|away|, slip)      away = curvature − anchor
 #pragma once

@@ -85,6 +85,12 @@ struct MembraneTerms {
   Wind wind;
   View<const YarnAnchor> yarns{};  ///< empty where no yarns rub
 
+  /// What of the stiffness h = dt K between two corners comes with the motion ahead.
+  ICLOTH_HD void hold_back(FaceTerm& t, Int3 f, int a, int b, const Mat3r& h, Real damping) const {
+    t.impulse[a] -= h * point.lead(f.v[b], damping);
+    if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
+  }
+
   ICLOTH_HD void operator()(Index i) const {
     const Int3 f = face[i];
     const Fabric& cloth = fabric[face_fabric[i]];
@@ -102,17 +108,15 @@ struct MembraneTerms {
       corners(point.start, start);
       start_strain = green_strain(face_frame(start, inverse[i].m));
     }
-    Stiffness k = stiffness_at(cloth, start_strain);
+    const Stiffness k = stiffness_at(cloth, start_strain);
     const StrainLimit limit = strain_limit(cloth, g);
     Sym2 s = stress(k, g);
+    Stiffness friction{};
     if (yarns.size() > 0 && cloth.shear_friction > 0) {
-      Vec3r end[3];
-      for (int a = 0; a < 3; ++a) end[a] = at[a] + point.ahead[f.v[a]];
-      const Real anchor = yarns[i].shear;
-      const Real friction =
-          shear_friction_stiffness(cloth, green_strain(face_frame(end, inverse[i].m)).uv - anchor);
-      s.uv += friction * (g.uv - anchor);
-      k.k33 += friction;
+      const Real away = g.uv - yarns[i].shear;
+      friction.k33 =
+          shear_friction_stiffness(cloth, point.moved() ? away : away + shear_ahead(i, at, g));
+      s.uv += friction.k33 * away;
     }
     if (limit.active) s = s + limit_stress(limit);
     const Sym2 positive = positive_part(s);
@@ -126,12 +130,31 @@ struct MembraneTerms {
         if (limit.active) h += limit_block(principal, limit, area[i], a, b);
         h = dt * h;
         t.block[block_slot(a, b)] = (dt + damping) * h;
-        t.impulse[a] -= h * point.lead(f.v[b], damping);
-        if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
+        hold_back(t, f, a, b, h, damping);
       }
     }
+    if (friction.k33 > 0) add_friction(t, i, frame, friction);
     if (wind.blows()) add_air(t, at, v);
     term[i] = t;
+  }
+
+  /// How much G_uv changes where the cloth goes on as before.
+  ICLOTH_HD Real shear_ahead(Index i, const Vec3r at[3], Sym2 g) const {
+    Vec3r end[3];
+    for (int a = 0; a < 3; ++a) end[a] = at[a] + point.ahead[face[i].v[a]];
+    return green_strain(face_frame(end, inverse[i].m)).uv - g.uv;
+  }
+
+  /// Stiffness of the friction between yarns; not damped, since its force ends at HG.
+  ICLOTH_HD void add_friction(FaceTerm& t, Index i, const FaceFrame& frame,
+                              const Stiffness& friction) const {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = a; b < 3; ++b) {
+        const Mat3r h = point.dt * membrane_block(frame, friction, {}, area[i], a, b);
+        t.block[block_slot(a, b)] += point.dt * h;
+        hold_back(t, face[i], a, b, h, 0);
+      }
+    }
   }
 
   ICLOTH_HD void add_air(FaceTerm& t, const Vec3r xs[3], const Vec3r vs[3]) const {

@@ -5,6 +5,7 @@
 
 #include "kernels/parallel.h"
 #include "sim/work.h"
+#include "sim/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -379,6 +380,7 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   State& s = step.state;
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
+  drag_yarns(mesh, p, s);
   rule_ = time_rule(p.integrator, static_cast<double>(step.dt), s.past.dt);
   const View<const Vec3r> velocity = move_freely(step);
   Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), velocity, rule_.h};
@@ -393,7 +395,8 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
     point.at = at_.view();
     point.ahead = ahead_.view();
   }
-  outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, point, dv_.view());
+  outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, point, dv_.view()) +
+                yarn_work(mesh, p, s);
 }
 
 View<const Vec3r> Implicit::move_freely(const StepContext& step) {

@@ -31,7 +31,7 @@ class Implicit {
   double missed_tension() const { return missed_tension_; }
   /// What the residual of the last solve is short of the forces, over all free vertices [N].
   Vec3d lost_force() const { return lost_force_; }
-  /// Work of air, hands and contacts on the cloth from x0 to the candidate [J].
+  /// Work of air, hands, contacts and rubbing yarns on the cloth from x0 to the candidate [J].
   double work() const { return contact_work_ + outer_work_; }
 
  private:
@@ -58,7 +58,7 @@ class Implicit {
   Array<Vec3r> at_, ahead_;  ///< of the linearisation, from the second iteration (cloth_vertices)
   double missed_tension_ = 0;
   Vec3d lost_force_;
-  double contact_work_ = 0, outer_work_ = 0;  ///< [J], the latter of air and hands
+  double contact_work_ = 0, outer_work_ = 0;  ///< [J], the latter of air, hands and yarns
   LinearSolver solver_;
 };
 

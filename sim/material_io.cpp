@@ -78,8 +78,8 @@ void read_orthotropic(const JsonValue& value, Material& material) {
 
 void read_yarn_friction(const JsonValue& value, Material& material) {
   JsonObject object(value);
-  material.bending_friction = object.number("bending", 0, {0, 10});
-  material.shear_friction = object.number("shear", 0, {0, 1e6});
+  material.bending_friction = object.number("bending", material.bending_friction, {0, 10});
+  material.shear_friction = object.number("shear", material.shear_friction, {0, 1e6});
   object.finish();
 }
 

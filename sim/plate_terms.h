@@ -68,23 +68,42 @@ struct PlateTerms {
                                : hinge_term[h].k;
       end[a] = hinge_term[h].k + hinge_term[h].s;
     }
-    const Sym2 curvature = plate_curvature(p, end);
-    PlateModuli m = plate_moduli(cloth, plate_curvature(p, start));
-    Sym2 moment = plate_moment(m, curvature);
+    const PlateModuli m = plate_moduli(cloth, plate_curvature(p, start));
+    const Sym2 moment = plate_moment(m, plate_curvature(p, end));
+    const Real dt = point.dt;
+    PlateTerm t{};
+    add(t, i, m, moment, dt + cloth.damping + damping_extra);
     if (yarns.size() > 0 && cloth.bending_friction > 0) {
-      const Sym2 away = curvature - yarns[i].curvature;
-      const PlateModuli friction = bending_friction_moduli(cloth, away);
-      moment = moment + plate_moment(friction, away);
-      m.d11 += friction.d11, m.d22 += friction.d22, m.d33 += friction.d33;
-    }
-    const Real dt = point.dt, delay = dt + cloth.damping + damping_extra;
-    PlateTerm t;
-    plate_bound(plate_stiffness(p, m, area[i]), t.stiffness);
-    for (int a = 0; a < 3; ++a) {
-      t.stiffness[a] *= dt * delay;
-      t.impulse[a] = -dt * plate_torque(p, moment, area[i], a);
+      Sym2 away, seen;
+      curve_away(i, away, seen);
+      const PlateModuli friction = bending_friction_moduli(cloth, seen);
+      add(t, i, friction, plate_moment(friction, away), dt);  // not damped: its moment ends at HB
     }
     term[i] = t;
+  }
+
+  ICLOTH_HD void add(PlateTerm& t, Index i, const PlateModuli& m, Sym2 moment, Real delay) const {
+    Real bound[3];
+    plate_bound(plate_stiffness(plate[i], m, area[i]), bound);
+    for (int a = 0; a < 3; ++a) {
+      t.stiffness[a] += point.dt * delay * bound[a];
+      t.impulse[a] -= point.dt * plate_torque(plate[i], moment, area[i], a);
+    }
+  }
+
+  /// Curvature away from the anchor: with the motion ahead, and where the friction is looked up.
+  ICLOTH_HD void curve_away(Index i, Sym2& away, Sym2& seen) const {
+    Real at[3], end[3];
+    for (int a = 0; a < 3; ++a) {
+      at[a] = end[a] = 0;
+      const Index h = plate[i].hinge[a];
+      if (h < 0) continue;
+      const HingeTerm& t = hinge_term[h];
+      at[a] = end[a] = t.k;
+      for (int b = 0; b < 4; ++b) end[a] += dot(t.gradient[b], point.ahead[hinge[h].v.v[b]]);
+    }
+    away = plate_curvature(plate[i], end) - yarns[i].curvature;
+    seen = point.moved() ? plate_curvature(plate[i], at) - yarns[i].curvature : away;
   }
 };
 

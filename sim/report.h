@@ -45,7 +45,8 @@ struct StepReport {
   double momentum_error = 0;
   /// Kinetic, elastic and gravity energy after the step, less those before it, less the work done
   /// on the cloth in it by air, hands, contacts (repulsion and friction, as the linear terms
-  /// applied them) and impact zones (all that they changed in those energies) [J]. Negative: what
+  /// applied them), the friction between yarns (what it gives back included) and impact zones (all
+  /// that they changed in those energies) [J]. Negative: what
   /// damping, of the fabric and of the integrator, took away; positive: made from nothing, an
   /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
   /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.

@@ -45,6 +45,7 @@ struct Snapshot {
   std::vector<Vec3d> past_motion{}, past_change{};
   double past_dt = 0;
   std::vector<FaceYarns> yarns{};  ///< (cloth faces), empty where no yarns rub
+  bool yarns_bend = false;         ///< they know curvatures, which single hinges do not
 };
 
 class Simulator {

@@ -8,7 +8,6 @@
 #include "kernels/parallel.h"
 #include "sim/fabrics.h"
 #include "sim/statistics.h"
-#include "sim/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -136,12 +135,7 @@ void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
   upload_fabrics(mesh_, *scene_, parameters);
-  const bool plates = mesh_.bends && parameters.bending_model == BendingModel::plate;
-  if (plates) upload_plates(mesh_, world_);
-  const Index rubbing = mesh_.yarns_rub ? mesh_.cloth_faces : 0;
-  if (state_.yarns.size() != rubbing || yarns_bend_ != plates)
-    ease_yarns(mesh_, parameters, state_);
-  yarns_bend_ = plates;
+  if (mesh_.bends && parameters.bending_model == BendingModel::plate) upload_plates(mesh_, world_);
   if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
   pattern_bends_ = mesh_.bends;
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
@@ -160,7 +154,6 @@ void Solver::set_parameters(const Parameters& parameters) {
 
 void Solver::begin_substep(double start, double dt) {
   state_.x0.copy_from(state_.x1);
-  drag_yarns(mesh_, parameters_, state_);
   std::vector<Vec3d> end;
   std::vector<Vec3r> x1;
   for (const WorldObject& object : world_.objects) {
@@ -183,7 +176,7 @@ void Solver::accept_substep(StepReport& report, double dt) {
         std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
   implicit_.end(state_);
-  work_ += implicit_.work() + yarn_work(mesh_, parameters_, state_);
+  work_ += implicit_.work();
   if (impact_zones_.corrected()) work_ += zone_work(dt);
 }
 
@@ -319,6 +312,7 @@ Snapshot Solver::snapshot() const {
     s.yarns.push_back({{number(y.curvature.uu), number(y.curvature.uv), number(y.curvature.vv)},
                        number(y.shear)});
   }
+  s.yarns_bend = state_.yarns_bend;
   s.past_dt = state_.past.dt;
   if (!(s.past_dt > 0)) return s;
   for (const Vec3r& d : state_.past.motion.download()) s.past_motion.push_back(convert<double>(d));
@@ -365,9 +359,8 @@ void Solver::restore_past(const Snapshot& snapshot) {
   upload_as(state_.past.change, snapshot.past_change, to_real);
 }
 
-/// Of a state without anchors, or by a solver in which no yarns rub: at ease.
 void Solver::restore_yarns(const Snapshot& snapshot) {
-  if (snapshot.yarns.empty() || !mesh_.yarns_rub) return ease_yarns(mesh_, parameters_, state_);
+  state_.yarns_bend = snapshot.yarns_bend;
   upload_as(state_.yarns, snapshot.yarns, [](const FaceYarns& y) {
     return YarnAnchor{{real(y.curvature[0]), real(y.curvature[1]), real(y.curvature[2])},
                       real(y.shear)};

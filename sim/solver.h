@@ -71,7 +71,6 @@ class Solver final : public Simulator {
   Array<HeldForce> start_held_;     ///< likewise
   Past start_past_;                 ///< likewise
   Array<YarnAnchor> start_yarns_;   ///< likewise
-  bool yarns_bend_ = false;         ///< whether state_.yarns know curvatures, set_parameters
   Hands hands_;
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/stencil.h"
+#include "kernels/yarn_friction.h"
 #include "sim/parameters.h"
 #include "sim/report.h"
 #include "sim/time_rule.h"
@@ -30,7 +31,11 @@ struct State {
   Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
 
-  Array<YarnAnchor> yarns;  ///< (cloth_faces), empty where no yarns rub; drag_yarns
+  /// Where the friction between yarns pulls nowhere (cloth_faces), empty where no yarns rub;
+  /// match_yarns, drag_yarns.
+  Array<YarnAnchor> yarns;
+  bool yarns_bend = false;        ///< they know curvatures, not shear alone; match_yarns
+  Array<YarnAnchor> yarns_start;  ///< deformation of x0, likewise; drag_yarns
 
   Past past;
 };

@@ -2,7 +2,8 @@
 //
 //   begin_substep             obstacles at t and t + dt, x0 ← x1
 //   proximity                 (1) VF and EE pairs closer than the thickness        Section 2.5
-//   implicit                  (2) candidate x1, may penetrate                      Section 2.4–2.5
+//   implicit                  (2) rubbing yarns are dragged along;
+//                                 candidate x1, may penetrate                      Section 2.4–2.5
 //   repeat
 //     ccd                     (3) impacts on the segments x0 → x1; first all, then only pairs
 //                                 with a dirty vertex                              Algorithm 1
@@ -16,6 +17,7 @@
 
 #include "sim/solver.h"
 #include "sim/statistics.h"
+#include "sim/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -108,6 +110,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
   report.step = step_index_;
   report.dt = parameters_.time_step;
   timed(report.ms_total, [&] {
+    match_yarns(mesh_, parameters_, state_);
     save_start();
     use_hands(events);
     // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.

@@ -1,8 +1,8 @@
 // The scene in the memory of the device: constant during a simulation.
 #pragma once
 
+#include "kernels/plate.h"
 #include "kernels/stencil.h"
-#include "kernels/yarn_friction.h"
 #include "sim/world.h"
 
 namespace icloth::ICLOTH_BUILD {

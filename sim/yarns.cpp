@@ -33,48 +33,60 @@ struct EaseYarns {
 
 struct DragYarns {
   FaceDeformation deformation;
-  View<YarnAnchor> anchor;
-  ICLOTH_HD void operator()(Index i) const { anchor[i] = dragged(anchor[i], deformation(i)); }
-};
-
-struct YarnWork {
-  FaceDeformation start, end;
-  View<const Real> area;
-  View<const Index> face_fabric;
-  View<const Fabric> fabric;
-  View<const YarnAnchor> anchor;
-  ICLOTH_HD double operator()(Index i) const {
-    return static_cast<double>(
-        area[i] * yarn_work_density(fabric[face_fabric[i]], anchor[i], start(i), end(i)));
+  View<YarnAnchor> anchor, start;
+  ICLOTH_HD void operator()(Index i) const {
+    start[i] = deformation(i);
+    anchor[i] = dragged(anchor[i], start[i]);
   }
 };
 
+struct YarnWork {
+  FaceDeformation end;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const YarnAnchor> anchor, start;
+  ICLOTH_HD double operator()(Index i) const {
+    return static_cast<double>(
+        area[i] * yarn_work_density(fabric[face_fabric[i]], anchor[i], start[i], end(i)));
+  }
+};
+
+bool bend_as_plates(const Topology& mesh, const Parameters& p) {
+  return mesh.bends && p.bending_model == BendingModel::plate;
+}
+
 FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, View<const Vec3r> x) {
-  const bool plates = mesh.bends && p.bending_model == BendingModel::plate;
   return {mesh.face.view(), mesh.face_inverse.view(),
-          plates ? mesh.plate.view() : View<const PlateRest>{}, mesh.hinge.view(), x};
+          bend_as_plates(mesh, p) ? mesh.plate.view() : View<const PlateRest>{}, mesh.hinge.view(),
+          x};
 }
 
 }  // namespace
 
-void drag_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
-  for_each("step.drag_yarns", state.yarns.size(),
-           DragYarns{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
-}
-
-void ease_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
-  state.yarns.resize(mesh.yarns_rub ? mesh.cloth_faces : 0);
-  for_each("step.ease_yarns", state.yarns.size(),
+void match_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
+  const Index rubbing = mesh.yarns_rub ? mesh.cloth_faces : 0;
+  const bool bend = rubbing > 0 && bend_as_plates(mesh, parameters);
+  if (state.yarns.size() == rubbing && state.yarns_bend == bend) return;
+  state.yarns.resize(rubbing);
+  state.yarns_bend = bend;
+  for_each("step.ease_yarns", rubbing,
            EaseYarns{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
 }
 
+void drag_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
+  state.yarns_start.resize(state.yarns.size());
+  for_each("implicit.drag_yarns", state.yarns.size(),
+           DragYarns{deformation_of(mesh, parameters, state.x0.view()), state.yarns.view(),
+                     state.yarns_start.view()});
+}
+
 double yarn_work(const Topology& mesh, const Parameters& parameters, const State& state) {
-  return reduce(
-      "step.yarn_work", state.yarns.size(), 0.0,
-      YarnWork{deformation_of(mesh, parameters, state.x0.view()),
-               deformation_of(mesh, parameters, state.candidate.view()), mesh.face_area.view(),
-               mesh.face_fabric.view(), mesh.fabric.view(), state.yarns.view()},
-      Sum{});
+  return reduce("implicit.yarn_work", state.yarns.size(), 0.0,
+                YarnWork{deformation_of(mesh, parameters, state.candidate.view()),
+                         mesh.face_area.view(), mesh.face_fabric.view(), mesh.fabric.view(),
+                         state.yarns.view(), state.yarns_start.view()},
+                Sum{});
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include "sim/intersections.h"
@@ -189,6 +188,22 @@ TEST(SceneIo, AllShippedMaterialsLoad) {
   EXPECT_EQ(shirt.density, 0.187);
   EXPECT_EQ(shirt.stretching[4][3], -174.43853);
   EXPECT_NEAR(shirt.bending[1][4], 8.860165e-6, 1e-15);
+}
+
+TEST(SceneIo, AMaterialKeepsWhatItsBaseHasAndItLeavesOut) {
+  const TemporaryFolder folder;
+  const Material worn = load_material(
+      folder.write("worn.json", R"({"base": "11oz-black-denim", "yarn_friction": {"shear": 1.5}})"),
+      "");
+  const Material soft =
+      load_material(folder.write("soft.json", R"({"base": "11oz-black-denim", "bending_unit": 1e-6,
+      "bending": [[9, 9, 9, 9, 9], [9, 9, 9, 9, 9], [9, 9, 9, 9, 9]]})"),
+                    "");
+  EXPECT_EQ(worn.shear_friction, 1.5);
+  EXPECT_EQ(worn.bending_friction, 1.05e-3);
+  EXPECT_EQ(worn.bending_spacing, 20);
+  EXPECT_EQ(soft.bending_spacing, 10) << "its own samples, not those of the base";
+  EXPECT_EQ(soft.bending_friction, 1.05e-3);
 }
 
 TEST(SceneIo, KeyframesAreInterpolatedAndHeldAtBothEnds) {

@@ -1,6 +1,7 @@
 // What the friction between yarns keeps of a fold and of a shear.
-#include <array>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "app/validation/case_run.h"
 #include "app/validation/cases.h"
@@ -28,7 +29,7 @@ std::vector<Vec3d> left_at_rest(CaseRun& run, const Strip& strip, const Material
 /// a spring (Grosberg 1966; how the Kawabata tests are read) comes to rest where the elastic moment
 /// is that of the friction, at the curvature HB/D, and at the shear angle HG/G. Protocol: D = 16
 /// µN·m, HB = 0.5 mN, from 60/m; G = 200 N/m, HG = 3 N/m, from an angle of 0.06; equilateral
-/// triangles, curvature from the directions of two rows in the middle.
+/// triangles, curvature from the directions at a quarter and three quarters of the length.
 void friction_of_yarns(CaseRun& run) {
   Strip strip;
   strip.length = 0.04;
