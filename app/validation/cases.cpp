@@ -30,8 +30,7 @@ constexpr Case kCases[] = {
     {"stopping on cloth", "v^2/(2 mu g)", false, stopping_on_cloth},
     {"stick-slip", "elastica; Sano et al. 2017, Romero et al. 2021, test 4", true, stick_slip},
     {"belt", "Euler and Eytelwein: exp(mu pi)", false, belt},
-    {"drape order", "Peirce, Cusick: grows with the bending length", false, drape_order},
-    {"drape band", "Cusick's drapemeter: denim 70 to 90 %", false, drape_band},
+    {"drape", "Cusick's drapemeter: denim 70 to 90 %; bending length", false, drape},
 };
 
 }  // namespace

@@ -39,7 +39,6 @@ void stick_slip(CaseRun& run);
 void belt(CaseRun& run);
 
 // cases_drape.cpp: Cusick's drapemeter
-void drape_order(CaseRun& run);
-void drape_band(CaseRun& run);
+void drape(CaseRun& run);
 
 }  // namespace icloth::validation

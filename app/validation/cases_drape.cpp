@@ -83,13 +83,17 @@ double shadow(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
   return ground.area();
 }
 
-/// Drape coefficient [%] of a fabric at rest, of one specimen.
+/// Drape coefficient [%] of a fabric at rest, of one specimen. It is let down gently, for 1.5 s in
+/// air as heavy as water (some 6 cm/s): yarns that rub hold the cloth where it first can rest, and
+/// a specimen that drops swings below that and stays there (docs/deviations.md).
 double drape_of(CaseRun& run, const Material& material, double edge, int specimen) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "drape of " + material.name;
   scene->cloths = {ring_cloth(edge, material, specimen)};
   Parameters& p = scene->parameters;
   p.time_step = 0.02;
+  const double air = p.air_density;
+  p.air_density = 1000;
   p.air_drag = 0.5;
   p.thickness = 1e-3;
   p.offset = 1e-4;
@@ -98,6 +102,10 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
     const double disc = kPi * kDisc * kDisc, whole = kPi * kSpecimen * kSpecimen;
     return 100 * (shadow(run.positions(), scene->cloths[0].mesh.faces) - disc) / (whole - disc);
   };
+  run.steps(75);
+  Parameters still = run.parameters();
+  still.air_density = air;
+  run.set_parameters(still);
   double last = 100, now = 0;
   for (int k = 0; k < 20; ++k) {
     run.steps(15);
@@ -105,63 +113,60 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
     if (k > 3 && std::fabs(now - last) < 0.1) return now;
     last = now;
   }
-  run.require(false, material.name + " at rest after 6 s");
+  run.require(false, material.name + " at rest after 7.5 s");
   return now;
 }
 
-/// Mean over specimens: a fabric whose yarns rub has many states of rest.
-double drape(CaseRun& run, const Material& material, double edge, int specimens = 6) {
+/// Mean over specimens.
+double mean_drape(CaseRun& run, const Material& material, double edge, int specimens) {
   double sum = 0;
   for (int k = 0; k < specimens; ++k) sum += drape_of(run, material, edge, k);
   return sum / specimens;
 }
 
 /// Peirce's bending length (D/ρg)^(1/3) [cm], D the moment over the curvature, averaged over the
-/// directions and the curvatures that were measured; the moment of the friction where there is one.
+/// directions and the curvatures above 0 that were measured; that of the friction included, which
+/// holds up the strip with which the length is measured as well.
 double bending_length(const Material& material) {
   double modulus = 0;
   constexpr double kWeights[] = {0.25, 0.5, 0.25};  // along weft, across, along warp
-  for (std::size_t row = 0; row < 3; ++row)
-    for (const double k : material.bending[row]) modulus += kWeights[row] * k / 4 / 5;
-  for (int sample = 1; sample < 5; ++sample)
-    modulus += material.bending_friction / (sample * material.bending_spacing) / 4;
+  for (std::size_t sample = 1; sample < 5; ++sample) {
+    const double curvature = static_cast<double>(sample) * material.bending_spacing;
+    modulus += material.bending_friction / curvature / 4;
+    for (std::size_t row = 0; row < 3; ++row)
+      modulus += kWeights[row] * material.bending[row][sample] / 4 / 4;
+  }
   return 100 * std::cbrt(modulus / (material.density * 9.81));
 }
 
 }  // namespace
 
 /// A round specimen of 30 cm clamped between discs of 18 cm; the drape coefficient is DC = (shadow
-/// − disc)/(specimen − disc). Source of the order: Peirce and Cusick, DC grows with the bending
-/// length (shear being alike); required of pairs whose lengths differ by more than a tenth.
-/// Protocol: the measured fabrics fall from level to rest (less than 0.1 points in 0.3 s), with
-/// edges of 2.5 mm; of 5 mm within 3 points of that. As with the real drapemeter each figure is the
-/// mean of several specimens and both faces, here of six.
-void drape_order(CaseRun& run) {
+/// − disc)/(specimen − disc). Sources: of denim, the one measured fabric that is woven as a
+/// published class of fabrics, DC is 70 to 90 %; after Peirce and Cusick DC grows with the bending
+/// length (shear being alike), which is required of pairs whose lengths differ by more than a
+/// tenth. Protocol: the measured fabrics come from level to rest (less than 0.1 points in 0.3 s),
+/// with edges of 2.5 mm; of 5 mm within 3 points of that. As with the real drapemeter each figure
+/// is the mean of several specimens and both faces, here of four.
+void drape(CaseRun& run) {
+  const int specimens = run.brief() ? 1 : 4;
   std::vector<std::pair<double, double>> seen;  // bending length, DC
-  for (const char* name : {"gray-interlock", "11oz-black-denim", "ivory-rib-knit",
-                           "camel-ponte-roma", "white-dots-on-blk", "pink-ribbon-brown"}) {
+  for (const std::string name : {"gray-interlock", "11oz-black-denim", "ivory-rib-knit",
+                                 "camel-ponte-roma", "white-dots-on-blk", "pink-ribbon-brown"}) {
     if (run.brief() && seen.size() == 2) break;
     const Material material = load_material(name, "");
-    const double fine =
-        run.brief() ? drape(run, material, 0.0075, 1) : drape(run, material, 0.0025);
+    const double measured = mean_drape(run, material, run.brief() ? 0.005 : 0.0025, specimens);
     if (!run.brief())
-      run.compare_absolute(std::string(name) + ", DC with edges of 2.5 and 5 mm [%]", fine,
-                           drape(run, material, 0.005), 3);
-    seen.emplace_back(bending_length(material), fine);
+      run.compare_absolute(name + ", DC with edges of 2.5 and 5 mm [%]", measured,
+                           mean_drape(run, material, 0.005, specimens), 3);
+    if (name == "11oz-black-denim") run.compare_absolute(name + ", DC [%]", 80, measured, 10);
+    seen.emplace_back(bending_length(material), measured);
   }
   int pairs = 0, ordered = 0;
   for (const auto& [length, measured] : seen)
     for (const auto& [longer, other] : seen)
       if (longer > 1.1 * length) ++pairs, ordered += other > measured ? 1 : 0;
   run.compare_absolute("pairs of fabrics in the order of their bending lengths", pairs, ordered, 0);
-}
-
-/// The same with the one measured fabric that is woven as a published class of fabrics: drape
-/// coefficients of denim are 70 to 90 %.
-void drape_band(CaseRun& run) {
-  const Material denim = load_material("11oz-black-denim", "");
-  run.compare_absolute("11oz-black-denim, DC [%]", 80,
-                       drape(run, denim, run.brief() ? 0.005 : 0.0025), 10);
 }
 
 }  // namespace icloth::validation
