@@ -60,17 +60,20 @@ TEST(Trial, PositionsAreComparedWhileTheyAreAlike) {
 
 TEST(Trial, RunsASceneAndComesNearerWithASmallerStep) {
   const TrialScene scene{"flag", 200, {"material.damping=0.002"}, 0.05, 2, 2};
-  const Trial reference = run_trial(scene, {"step.time_step=0.001"}, Build::cpu64, 1);
-  const Trial coarse = run_trial(scene, {"step.time_step=0.025"}, Build::cpu32, 1);
-  const Trial fine = run_trial(scene, {"step.time_step=0.005"}, Build::cpu32, 2);
+  const Trial reference = run_trial(scene, {"step.time_step=0.001"}, Build::cpu64);
+  const Trial coarse = run_trial(scene, {"step.time_step=0.025"}, Build::cpu32);
+  const Trial fine = run_trial(scene, {"step.time_step=0.005"}, Build::cpu32);
   EXPECT_TRUE(coarse.finished && fine.finished);
   EXPECT_EQ(fine.penetrations, 0u);
   EXPECT_EQ(fine.samples.size(), 2u);
   EXPECT_GT(fine.seconds, 0);
+  EXPECT_GT(fine.strain, 0);
+  EXPECT_TRUE(same_run(fine, run_trial(scene, {"step.time_step=0.005"}, Build::cpu32)));
+  EXPECT_FALSE(same_run(fine, coarse));
   const Errors far = compare(coarse, reference, 2), near = compare(fine, reference, 2);
   EXPECT_GT(near.position, 0);
   EXPECT_LT(2 * near.position, far.position);
-  EXPECT_THROW(run_trial(scene, {"step.time_step=0.03"}, Build::cpu32, 1), std::exception)
+  EXPECT_THROW(run_trial(scene, {"step.time_step=0.03"}, Build::cpu32), std::exception)
       << "does not divide the interval";
 }
 

@@ -39,11 +39,9 @@ Sample sample_of(const Simulator& simulator, std::size_t vertices, const StepRep
           report.elastic_energy, report.gravity_energy};
 }
 
-void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
-  HeadlessJob job = proto;
+void run(HeadlessJob& job, long every, int samples, Trial& now) {
   const Parameters& p = job.scene->parameters;
-  const std::size_t vertices = trial.mass.size();
-  Trial now;
+  const std::size_t vertices = now.mass.size();
   double ms = 0, iterations = 0;
   job.steps = every * samples;
   job.watch = [&](const Simulator& simulator, const StepReport* report) {
@@ -51,17 +49,15 @@ void run_once(const HeadlessJob& proto, long every, int samples, Trial& trial) {
     ms += report->ms_total;
     iterations += static_cast<double>(report->cg_iterations);
     now.pressed = std::max(now.pressed, 1 - report->min_gap / p.thickness);
+    now.strain = std::max(now.strain, report->max_strain);
     now.violation = std::max(now.violation, report->zone_violation / p.offset);
     if (report->step % every == 0) now.samples.push_back(sample_of(simulator, vertices, *report));
   };
   const HeadlessResult result = run_headless(job);
-  now.mass = std::move(trial.mass);
   now.penetrations = result.penetrations;
   now.finished = result.refused.empty() && !result.start_refused;
   now.seconds = 1e-3 * ms / (p.time_step * static_cast<double>(job.steps));
   now.cg_iterations = iterations / static_cast<double>(job.steps);
-  if (trial.seconds > 0) now.seconds = std::min(now.seconds, trial.seconds);
-  trial = std::move(now);
 }
 
 }  // namespace
@@ -74,8 +70,7 @@ std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
   return load_scene(scene.name, all);
 }
 
-Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
-                int repeats) {
+Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build) {
   HeadlessJob job;
   job.scene = trial_scene(scene, overrides);
   job.build = build;
@@ -90,10 +85,19 @@ Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrid
     const std::vector<double> mass = validation::lumped_mass(cloth);
     trial.mass.insert(trial.mass.end(), mass.begin(), mass.end());
   }
-  for (int k = 0; k < repeats; ++k) run_once(job, every, scene.samples, trial);
+  run(job, every, scene.samples, trial);
   for (const Sample& sample : trial.samples)
     trial.shadow += shadow_of(*job.scene, sample.positions) / scene.samples;
   return trial;
+}
+
+bool same_run(const Trial& a, const Trial& b) {
+  const auto same = [](const Sample& x, const Sample& y) {
+    return std::ranges::equal(x.positions, y.positions, [](const Vec3d& p, const Vec3d& q) {
+      return p.x == q.x && p.y == q.y && p.z == q.z;
+    });
+  };
+  return a.cg_iterations == b.cg_iterations && std::ranges::equal(a.samples, b.samples, same);
 }
 
 Errors compare(const Trial& trial, const Trial& reference, int samples_alike) {

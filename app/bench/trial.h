@@ -31,11 +31,12 @@ struct Sample {
 struct Trial {
   std::vector<Sample> samples;
   std::vector<double> mass;  ///< of the cloths' vertices [kg]
-  double seconds = 0;        ///< of wall time a simulated second, the fastest run counts
+  double seconds = 0;        ///< of wall time a simulated second
   double shadow = 0;         ///< area that the cloths cover from above, mean of the samples [m²]
   double pressed = 0;        ///< deepest way into the thickness: 1 − smallest gap / h
   double violation = 0;      ///< largest of the impact zones, of their offset δ
   double cg_iterations = 0;  ///< of a step
+  double strain = 0;         ///< largest principal stretch − 1 of any step
   std::size_t penetrations = 0;
   bool finished = false;  ///< no step was refused
 };
@@ -44,9 +45,11 @@ struct Trial {
 std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
                                          const std::vector<std::string>& overrides);
 
-/// Runs it so; the time step must divide the interval.
-Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build,
-                int repeats);
+/// Runs it so, once; the time step must divide the interval.
+Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build);
+
+/// Whether both took the same steps to the same end, by the samples and the work of the solver.
+bool same_run(const Trial& a, const Trial& b);
 
 /// Distances from a reference; relative ones are of the largest of the reference's samples.
 struct Errors {
