@@ -7,10 +7,11 @@ namespace icloth {
 namespace {
 
 std::size_t size_of(const HistoryEntry& entry) {
-  return sizeof(HistoryEntry) + entry.held.size() * sizeof(InputEvent) +
-         (entry.snapshot.positions.capacity() + entry.snapshot.velocities.capacity()) *
-             sizeof(Vec3d) +
-         entry.snapshot.yarns.capacity() * sizeof(FaceYarns);
+  const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  const Snapshot& s = entry.snapshot;
+  return sizeof(HistoryEntry) + entry.held.size() * sizeof(InputEvent) + bytes(s.positions) +
+         bytes(s.velocities) + bytes(s.friction) + bytes(s.past_motion) + bytes(s.past_change) +
+         bytes(s.yarns);
 }
 
 }  // namespace

@@ -255,14 +255,14 @@ TEST_F(Cli, RecordingReplaysOnAnyNumberOfThreads) {
 TEST_F(Cli, PresetAndRepairStayWhereMoreIsSet) {
   write("drop.json", kDrop);
   const std::string command =
-      "run drop.json --device cpu --quiet --steps 1 --set implicit.cg_tolerance=0.02"
+      "run drop.json --device cpu --quiet --steps 1 --set implicit.cg_tolerance=0.03"
       " --repair-start --preset fast ";
   ASSERT_EQ(icloth(command + "--record r.json").code, 0);
   const std::string recorded = read(folder_ / "r.json");
-  for (const char* word : {"\"preset=fast\"", "\"repair_start=on\"", "cg_tolerance=0.02"})
+  for (const char* word : {"\"preset=fast\"", "\"repair_start=on\"", "cg_tolerance=0.03"})
     EXPECT_TRUE(contains(recorded, word)) << recorded;
   const auto config = nlohmann::json::parse(icloth(command + "--dump-config").out);
-  EXPECT_EQ(config["implicit.cg_tolerance"], 0.02) << "a value that is set wins over the preset's";
+  EXPECT_EQ(config["implicit.cg_tolerance"], 0.03) << "a value that is set wins over the preset's";
   const auto fast = nlohmann::json::parse(icloth("run drop.json --preset fast --dump-config").out);
   EXPECT_EQ(config["step.time_step"], fast["step.time_step"]);
   const Outcome unknown = icloth("run drop.json --preset slow");
