@@ -140,7 +140,8 @@ void draw_stage_plot(PanelContext& context) {
                   ImGui::GetStyle().WindowPadding.x);
   ImGui::TextDisabled("%s", text);
   draw_estimates_line(context);
-  const ImVec2 size{ImGui::GetContentRegionAvail().x, 76 * context.scale};
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, 84 * context.scale};
+  const float bars = size.y - ImGui::GetTextLineHeight() - 4;  // under the label
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::InvisibleButton("##stages", size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -153,7 +154,7 @@ void draw_stage_plot(PanelContext& context) {
     if (hovered || report.step == context.ui.chosen_step) {
       list.AddRectFilled({x, at.y}, {x + width, at.y + size.y}, IM_COL32(255, 255, 255, 40));
     }
-    draw_bar(list, report, {x, at.y + size.y}, std::max(1.0f, width - 0.5f), size.y * 0.94f, scale);
+    draw_bar(list, report, {x, at.y + size.y}, std::max(1.0f, width - 0.5f), bars, scale);
     if (hovered) bar_tooltip(report);
     if (hovered && clicked) {
       context.ui.chosen_step = context.ui.chosen_step == report.step ? -1 : report.step;
