@@ -301,14 +301,19 @@ std::vector<Vec3r> folded(const Sheet& sheet, double size) {
   return x;
 }
 
-/// Impulses of one step of 1 s from rest, as the implicit stage makes them.
-std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>& x, Real dt) {
-  const std::vector<Vec3r> v(x.size());
+/// Impulses of one step as the implicit stage makes them; with a velocity and anchors of yarns, or
+/// at rest without.
+std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>& x, Real dt,
+                                   std::vector<Vec3r> v = {},
+                                   const std::vector<YarnAnchor>& yarns = {}) {
+  v.resize(x.size());
+  std::vector<Vec3r> ahead;
+  for (const Vec3r& u : v) ahead.push_back(dt * u);
   const Index count = static_cast<Index>(x.size()),
               hinges = static_cast<Index>(sheet.hinges.size());
   const Index faces = static_cast<Index>(sheet.plates.size());
-  const View<const Vec3r> here(x.data(), count), none(v.data(), count);
-  const Linearization point{here, here, none, none, dt};
+  const View<const Vec3r> here(x.data(), count);
+  const Linearization point{here, here, {ahead.data(), count}, {v.data(), count}, dt};
   const std::vector<Index> fabric_of(sheet.plates.size());
   std::vector<HingeSlots> slots(sheet.hinges.size(), HingeSlots{{-1, -1}});
   for (Index f = 0; f < faces; ++f)
@@ -331,7 +336,8 @@ std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>&
                point,
                {terms.data(), hinges},
                {plate_term.data(), faces},
-               0}(f);
+               0,
+               {yarns.data(), static_cast<Index>(yarns.size())}}(f);
   for (Index h = 0; h < hinges; ++h)
     GatherPlates{
         {slots.data(), hinges}, {plate_term.data(), faces}, rest, fabric, point, term, 0}(h);
@@ -410,6 +416,38 @@ TEST(Plate, FoldsTurnedBySomeRotationTurnTheirForces) {
   const std::vector<Vec3r> a = impulses(sheet, plate_terms(sheet, x, 1));
   const std::vector<Vec3r> b = impulses(sheet, plate_terms(sheet, y, 1));
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT(norm(turned(a[i]) - b[i]), 1e-10);
+}
+
+TEST(Plate, DampingLeavesTheFrictionOfYarnsAlone) {
+  // Its moment is HB at most, which damping would exceed where the cloth moves fast.
+  Fabric rubbing = unit_fabric();
+  rubbing.bending_friction = 0.3;
+  for (const Real damping : {0.0, 2.0}) {
+    rubbing.damping = damping;
+    const Sheet sheet(testing::make_layout(Layout::jittered, 3, 3, 1.0), rubbing);
+    const std::vector<Vec3r> x = folded(sheet, 0.15), v = folded(sheet, 20.0);
+    const Real dt = 0.01;
+    const std::vector<HingeTerm> with = plate_terms(
+        sheet, x, dt, v, std::vector<YarnAnchor>(sheet.plates.size(), YarnAnchor{{9, 4, -7}, 0}));
+    const std::vector<HingeTerm> without = plate_terms(sheet, x, dt, v);
+    std::vector<Real> most(sheet.hinges.size());
+    for (std::size_t f = 0; f < sheet.plates.size(); ++f)
+      for (int a = 0; a < 3; ++a) {
+        const Index h = sheet.plates[f].hinge[a];
+        if (h < 0) continue;
+        Real bend[3] = {0, 0, 0};
+        bend[a] = 1;
+        most[at(h)] += dt * sheet.world.face_area[f] * rubbing.bending_friction *
+                       curvature_size(plate_curvature(sheet.plates[f], bend));
+      }
+    double largest = 0;
+    for (std::size_t h = 0; h < most.size(); ++h) {
+      const double share = std::fabs(with[h].s - without[h].s) / most[h];
+      EXPECT_LE(share, 1 + 1e-9) << h;
+      largest = std::max(largest, share);
+    }
+    EXPECT_GT(largest, 0.3) << "it slips somewhere";
+  }
 }
 
 Eigen::Matrix3d full(const PlateStiffness& s) {

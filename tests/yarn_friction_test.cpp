@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+#include "sim/elastic_terms.h"
+
 namespace icloth::cpu64 {
 namespace {
 
@@ -148,6 +150,35 @@ TEST(YarnFriction, NeverPullsHarderThanTheYarnsHold) {
     const YarnAnchor again = dragged(anchor, now);
     EXPECT_NEAR(curvature_size(again.curvature - anchor.curvature), 0, 1e-10);
     EXPECT_NEAR(again.shear, anchor.shear, 1e-15);
+  }
+}
+
+TEST(YarnFriction, DampingLeavesTheShearForceAlone) {
+  // A half of a unit square, sheared fast: corners feel area · HG times the gradient of 2 G_uv.
+  const std::vector<Vec3r> x{{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}, v{{0, 0, 0}, {0, 0, -3}, {3, 0, 0}};
+  const Real dt = 0.01;
+  std::vector<Vec3r> ahead;
+  for (const Vec3r& u : v) ahead.push_back(dt * u);
+  const Int3 face{{0, 1, 2}};
+  const Topology::Inverse inverse{{1, 0, 0, 1}};
+  const Real area = 0.5;
+  const Index first = 0;
+  const YarnAnchor anchor{{0, 0, 0}, 0};
+  const auto impulse = [&](Real damping, bool rubs) {
+    Fabric fabric = rubbing();
+    fabric.damping = damping;
+    FaceTerm term;
+    const View<const Vec3r> here(x.data(), 3);
+    const Linearization point{here, here, {ahead.data(), 3}, {v.data(), 3}, dt};
+    const View<const YarnAnchor> yarns =
+        rubs ? View<const YarnAnchor>(&anchor, 1) : View<const YarnAnchor>{};
+    MembraneTerms{{&face, 1}, {&inverse, 1}, {&area, 1}, {&first, 1},    {&fabric, 1},
+                  point,      {&term, 1},    0,          Wind{{}, 0, 0}, yarns}(0);
+    return term.impulse[1];
+  };
+  for (const Real damping : {0.0, 2.0}) {
+    const Vec3r share = impulse(damping, true) - impulse(damping, false);
+    EXPECT_NEAR(norm(share), dt * area * kShear, 1e-9) << damping;
   }
 }
 
