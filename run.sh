@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # ./run.sh [--no-install] [ARGS…]
 # Installs what is missing, builds, and runs `icloth ARGS…`. Without ARGS: the scarf scene in a
-# window, or without a display that can show it a headless run of it that prints statistics and writes scarf.png.
+# window, or without a display that can show it a headless run of it that prints statistics and
+# writes scarf.png.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$root/cmake/setup.sh"
@@ -21,7 +22,7 @@ elif [[ -n ${DISPLAY:-}${WAYLAND_DISPLAY:-} ]]; then
   "$icloth" view scarf || status=$?
   ((status == 3)) || exit "$status"
 fi
-say "No display: simulating the scarf scene and drawing scarf.png"
+say "No window: simulating the scarf scene and drawing scarf.png"
 status=0
 "$icloth" render scarf --steps 600 --out scarf.png || status=$?
 if ((status == 3)); then  # not even software rendering: at least the numbers

@@ -59,7 +59,8 @@ ICLOTH_HD inline AirForce air_force(const Wind& wind, const Vec3r xs[3], const V
 }
 
 /// Where the elastic forces are linearised: f(x1) ≈ f(at) − K(at) (x1 − at), stiffness damping with
-/// the time constant d included, x1 = at + ahead + dt Δv.
+/// the time constant d included, x1 = at + ahead + dt Δv. The friction between yarns likewise,
+/// undamped; its K is the secant from the anchor to x1 as foreseen: at + ahead, once moved() at.
 struct Linearization {
   View<const Vec3r> start;  ///< x0; the coefficients of the fabric are those of this shape [m]
   View<const Vec3r> at;     ///< [m]
@@ -111,19 +112,20 @@ struct MembraneTerms {
     const Stiffness k = stiffness_at(cloth, start_strain);
     const StrainLimit limit = strain_limit(cloth, g);
     Sym2 s = stress(k, g);
+    if (limit.active) s = s + limit_stress(limit);
     Stiffness friction{};
+    Sym2 held{0, 0, 0};  // by friction
     if (yarns.size() > 0 && cloth.shear_friction > 0) {
       const Real away = g.uv - yarns[i].shear;
       friction.k33 =
           shear_friction_stiffness(cloth, point.moved() ? away : away + shear_ahead(i, at, g));
-      s.uv += friction.k33 * away;
+      held.uv = friction.k33 * away;
     }
-    if (limit.active) s = s + limit_stress(limit);
     const Sym2 positive = positive_part(s);
     const FaceFrame principal = limit.active ? principal_frame(frame, limit) : frame;
     const Real dt = point.dt, damping = cloth.damping + damping_extra;
     FaceTerm t;
-    for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s, area[i], a);
+    for (int a = 0; a < 3; ++a) t.impulse[a] = dt * membrane_force(frame, s + held, area[i], a);
     for (int a = 0; a < 3; ++a) {
       for (int b = a; b < 3; ++b) {
         Mat3r h = membrane_block(frame, k, positive, area[i], a, b);
@@ -133,7 +135,7 @@ struct MembraneTerms {
         hold_back(t, f, a, b, h, damping);
       }
     }
-    if (friction.k33 > 0) add_friction(t, i, frame, friction);
+    if (friction.k33 > 0) add_friction(t, i, frame, friction, positive_part(s + held) - positive);
     if (wind.blows()) add_air(t, at, v);
     term[i] = t;
   }
@@ -145,12 +147,13 @@ struct MembraneTerms {
     return green_strain(face_frame(end, inverse[i].m)).uv - g.uv;
   }
 
-  /// Stiffness of the friction between yarns; not damped, since its force ends at HG.
+  /// Stiffness of the friction between yarns, and what its stress adds to the positive one; not
+  /// damped, since its force ends at HG.
   ICLOTH_HD void add_friction(FaceTerm& t, Index i, const FaceFrame& frame,
-                              const Stiffness& friction) const {
+                              const Stiffness& friction, Sym2 positive) const {
     for (int a = 0; a < 3; ++a) {
       for (int b = a; b < 3; ++b) {
-        const Mat3r h = point.dt * membrane_block(frame, friction, {}, area[i], a, b);
+        const Mat3r h = point.dt * membrane_block(frame, friction, positive, area[i], a, b);
         t.block[block_slot(a, b)] += point.dt * h;
         hold_back(t, face[i], a, b, h, 0);
       }

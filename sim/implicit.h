@@ -5,7 +5,8 @@
 //   x1 = x' + h (v' + Δv)                      h, x', v': sim/time_rule.h; Euler: dt, x0, v
 //
 // K: positive semi-definite stiffness of membrane and bending at x̂, with the measured fabric's
-// coefficients frozen at x0; d: stiffness-proportional damping [s].
+// coefficients frozen at x0; d: stiffness-proportional damping [s]. f and K have the friction
+// between yarns as well, without d (sim/elastic_terms.h, Linearization).
 #pragma once
 
 #include "sim/linear_solver.h"

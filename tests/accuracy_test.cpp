@@ -70,6 +70,9 @@ TEST(Trial, RunsASceneAndComesNearerWithASmallerStep) {
   EXPECT_GT(fine.strain, 0);
   EXPECT_TRUE(same_run(fine, run_trial(scene, {"step.time_step=0.005"}, Build::cpu32)));
   EXPECT_FALSE(same_run(fine, coarse));
+  Trial searched = fine;  // to the same end, with a solve more
+  searched.solves += 1;
+  EXPECT_FALSE(same_run(fine, searched));
   const Errors far = compare(coarse, reference, 2), near = compare(fine, reference, 2);
   EXPECT_GT(near.position, 0);
   EXPECT_LT(2 * near.position, far.position);

@@ -163,7 +163,7 @@ TEST(YarnFriction, DampingLeavesTheShearForceAlone) {
   const Topology::Inverse inverse{{1, 0, 0, 1}};
   const Real area = 0.5;
   const Index first = 0;
-  const YarnAnchor anchor{{0, 0, 0}, 0};
+  YarnAnchor anchor{{0, 0, 0}, 0};
   const auto impulse = [&](Real damping, bool rubs) {
     Fabric fabric = rubbing();
     fabric.damping = damping;
@@ -180,6 +180,10 @@ TEST(YarnFriction, DampingLeavesTheShearForceAlone) {
     const Vec3r share = impulse(damping, true) - impulse(damping, false);
     EXPECT_NEAR(norm(share), dt * area * kShear, 1e-9) << damping;
   }
+  anchor.shear = -0.05;  // stress already before the step
+  const Vec3r held = impulse(0, true) - impulse(0, false);
+  EXPECT_NEAR(norm(held), dt * area * kShear, 0.05 * dt * area * kShear);
+  EXPECT_LT(norm(impulse(2, true) - impulse(2, false) - held), 1e-9);
 }
 
 }  // namespace

@@ -42,12 +42,15 @@ Sample sample_of(const Simulator& simulator, std::size_t vertices, const StepRep
 void run(HeadlessJob& job, long every, int samples, Trial& now) {
   const Parameters& p = job.scene->parameters;
   const std::size_t vertices = now.mass.size();
-  double ms = 0, iterations = 0;
+  double ms = 0;
   job.steps = every * samples;
   job.watch = [&](const Simulator& simulator, const StepReport* report) {
     if (!report) return;
     ms += report->ms_total;
-    iterations += static_cast<double>(report->cg_iterations);
+    const double share = 1 / static_cast<double>(job.steps);
+    now.cg_iterations += share * static_cast<double>(report->cg_iterations);
+    now.solves += share * static_cast<double>(report->newton_iterations);
+    now.tests += share * static_cast<double>(report->elementary_tests);
     now.pressed = std::max(now.pressed, 1 - report->min_gap / p.thickness);
     now.strain = std::max(now.strain, report->max_strain);
     now.violation = std::max(now.violation, report->zone_violation / p.offset);
@@ -57,7 +60,6 @@ void run(HeadlessJob& job, long every, int samples, Trial& now) {
   now.penetrations = result.penetrations;
   now.finished = result.refused.empty() && !result.start_refused;
   now.seconds = 1e-3 * ms / (p.time_step * static_cast<double>(job.steps));
-  now.cg_iterations = iterations / static_cast<double>(job.steps);
 }
 
 }  // namespace
@@ -97,7 +99,8 @@ bool same_run(const Trial& a, const Trial& b) {
       return p.x == q.x && p.y == q.y && p.z == q.z;
     });
   };
-  return a.cg_iterations == b.cg_iterations && std::ranges::equal(a.samples, b.samples, same);
+  return a.cg_iterations == b.cg_iterations && a.solves == b.solves && a.tests == b.tests &&
+         std::ranges::equal(a.samples, b.samples, same);
 }
 
 Errors compare(const Trial& trial, const Trial& reference, int samples_alike) {

@@ -36,6 +36,8 @@ struct Trial {
   double pressed = 0;        ///< deepest way into the thickness: 1 − smallest gap / h
   double violation = 0;      ///< largest of the impact zones, of their offset δ
   double cg_iterations = 0;  ///< of a step
+  double solves = 0;         ///< likewise, of linear systems
+  double tests = 0;          ///< likewise, elementary ones
   double strain = 0;         ///< largest principal stretch − 1 of any step
   std::size_t penetrations = 0;
   bool finished = false;  ///< no step was refused
@@ -48,7 +50,7 @@ std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
 /// Runs it so, once; the time step must divide the interval.
 Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build);
 
-/// Whether both took the same steps to the same end, by the samples and the work of the solver.
+/// Whether both took the same steps to the same end, by the samples and the work of the stages.
 bool same_run(const Trial& a, const Trial& b);
 
 /// Distances from a reference; relative ones are of the largest of the reference's samples.
