@@ -175,7 +175,7 @@ class AccuracySuite {
  private:
   std::vector<Point> measure(const TrialScene& scene, const std::vector<Setting>& list,
                              const Trial& reference) {
-    constexpr std::size_t kRounds = 3;
+    constexpr std::size_t kRounds = 4;
     std::vector<Point> points;
     Progress progress(scene.name, static_cast<long>(kRounds * list.size()), quiet_);
     const auto run = [&](const Setting& setting) {
@@ -189,15 +189,20 @@ class AccuracySuite {
       points.push_back(std::move(point));
       progress.update(static_cast<long>(points.size()));
     }
-    // In turns, so that an hour of the machine slows all of them or none.
+    // In turns, so that an hour of the machine slows all of them or none; a run that several
+    // settings make alike once for all of them, since the fastest of more would be faster.
+    std::vector<std::size_t> first(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k)
+      while (first[k] < k && !same_run(points[first[k]].trial, points[k].trial)) ++first[k];
     for (std::size_t round = 1; round < kRounds; ++round) {
       for (std::size_t k = 0; k < points.size(); ++k) {
         double& seconds = points[k].trial.seconds;
-        seconds = std::min(seconds, run(points[k].setting).seconds);
+        if (first[k] == k) seconds = std::min(seconds, run(points[k].setting).seconds);
         progress.update(static_cast<long>(round * list.size() + k + 1));
       }
     }
-    share_times(points);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      points[k].trial.seconds = points[first[k]].trial.seconds;
     std::vector<std::pair<double, double>> places;
     for (const Point& p : points)
       places.emplace_back(p.trial.seconds, p.errors.position < 0 ? HUGE_VAL : p.errors.position);
@@ -205,16 +210,6 @@ class AccuracySuite {
     for (std::size_t k = 0; k < points.size(); ++k)
       points[k].front = front[k] && points[k].errors.position >= 0;
     return points;
-  }
-
-  /// Settings that make no difference to a run have its fastest time together.
-  static void share_times(std::vector<Point>& points) {
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      for (std::size_t other = 0; other < k; ++other) {
-        Trial &a = points[k].trial, &b = points[other].trial;
-        if (same_run(a, b)) a.seconds = b.seconds = std::min(a.seconds, b.seconds);
-      }
-    }
   }
 
   Build build_;
