@@ -24,11 +24,11 @@ constexpr Preset::Setting kAccurate[] = {{"step.time_step", "0.0025"},
 
 constexpr Preset kPresets[] = {
     {"fast", "Fast", kFast,
-     "For looking: 1.2 (flag) to 2.1 times (sphere) as fast as the built-in scenes' own settings. "
+     "For looking: 1.3 (flag) to 2.1 times (sphere) as fast as the built-in scenes' own settings. "
      "Vertices are 33 mm (flag) and 15 mm (sphere) from a reference with a step of 1/1600 s, "
      "energies 20 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
     {"normal", "Normal", kNormal,
-     "0.95 (flag) to 1.4 times (sphere) as fast as the built-in scenes' own settings, and nearer "
+     "1.0 (flag) to 1.4 times (sphere) as fast as the built-in scenes' own settings, and nearer "
      "to a reference with a step of 1/1600 s: vertices are 22 mm (flag) and 6 mm (sphere) away, "
      "energies 13 and 7 %. With the scenes' own settings: 27 and 9 mm, 13 and 18 %."},
     {"accurate", "Accurate", kAccurate,
