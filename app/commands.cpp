@@ -21,6 +21,7 @@
 #include "app/verbs/view.h"
 #include "sim/assets.h"
 #include "sim/error.h"
+#include "sim/text.h"
 
 namespace icloth {
 namespace {

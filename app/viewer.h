@@ -16,7 +16,7 @@
 #include "app/parameter_edits.h"
 #include "app/session.h"
 #include "app/test_status.h"
-#include "app/verbs/view.h"
+#include "app/view_options.h"
 #include "app/window.h"
 #include "render/camera.h"
 #include "render/gl_targets.h"

@@ -3,9 +3,11 @@
 
 #include <string>
 
-#include "sim/scene_io.h"  // assets_folder()
-
 namespace icloth {
+
+/// Folder with scenes/ materials/ bodies/ … : $ICLOTH_ASSETS, beside the program, or the source
+/// tree.
+std::string assets_folder();
 
 /// Path of a file named in a scene: absolute, else below `folder` (the scene's), else below
 /// assets_folder(). The first place that has it; the first candidate when none has.

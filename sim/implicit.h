@@ -13,6 +13,7 @@
 #include "sim/plate_terms.h"
 #include "sim/proximity.h"
 #include "sim/state.h"
+#include "sim/time_rule.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -5,7 +5,7 @@
 
 #include "sim/error.h"
 #include "sim/file_io.h"
-#include "sim/parameters.h"
+#include "sim/text.h"
 
 namespace icloth {
 namespace {

@@ -9,8 +9,6 @@
 
 namespace icloth {
 
-struct Scene;
-
 /// Object of a mesh file: a `g` group of an OBJ, or the whole file.
 struct MeshGroup {
   std::string name;
@@ -44,9 +42,6 @@ struct NamedMesh {
   std::span<const Vec3f> positions;
   std::span<const Triangle> faces;  ///< indices into positions
 };
-
-/// The objects of a scene, cloths first, at positions of all its vertices. Views into both.
-std::vector<NamedMesh> named_meshes(const Scene& scene, std::span<const Vec3f> positions);
 
 /// One group per object, coordinates with 9 significant digits; written beside and renamed.
 void write_obj(const std::string& path, std::span<const NamedMesh> objects);

@@ -117,7 +117,4 @@ void set_parameter(Parameters& parameters, std::string_view key, std::string_vie
 /// All effective values as a JSON object keyed by public name.
 std::string dump_parameters(const Parameters& parameters);
 
-/// The candidate with the smallest edit distance to `word` ("" when there is none).
-std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates);
-
 }  // namespace icloth

@@ -23,8 +23,4 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits = {});
 
-/// Folder with scenes/ materials/ bodies/ … : $ICLOTH_ASSETS, beside the program, or the source
-/// tree.
-std::string assets_folder();
-
 }  // namespace icloth

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/error.h"
+#include "sim/text.h"
 
 namespace icloth {
 namespace {

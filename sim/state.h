@@ -5,7 +5,6 @@
 #include "kernels/yarn_friction.h"
 #include "sim/parameters.h"
 #include "sim/report.h"
-#include "sim/time_rule.h"
 #include "sim/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -15,6 +14,21 @@ struct Spring {
   Index vertex;
   Real stiffness;  ///< [N/m]
   Vec3r target;    ///< [m]
+};
+
+/// What a two-step integrator (sim/time_rule.h) goes on from.
+struct Past {
+  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), accept
+  Array<Vec3r> change;  ///< v0 − v₋₁ [m/s] (cloth_vertices), accept; 0 where the vertex touched
+  double dt = 0;        ///< of that step [s]; 0: none, the arrays are not used
+
+  void forget() { dt = 0; }
+  void copy_from(const Past& other) {
+    dt = other.dt;
+    if (!(dt > 0)) return;
+    motion.copy_from(other.motion);
+    change.copy_from(other.change);
+  }
 };
 
 struct State {

@@ -9,7 +9,7 @@
 // 0.
 #pragma once
 
-#include "kernels/array.h"
+#include "kernels/platform.h"
 #include "sim/parameters.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -31,20 +31,5 @@ inline TimeRule time_rule(Integrator integrator, double dt, double past) {
   const double r = dt / past;
   return {real(dt), real(dt * (1 + r) / (1 + 2 * r)), real(r * r / (1 + 2 * r)), integrator};
 }
-
-/// What a two-step rule goes on from.
-struct Past {
-  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), accept
-  Array<Vec3r> change;  ///< v0 − v₋₁ [m/s] (cloth_vertices), accept; 0 where the vertex touched
-  double dt = 0;        ///< of that step [s]; 0: none, the arrays are not used
-
-  void forget() { dt = 0; }
-  void copy_from(const Past& other) {
-    dt = other.dt;
-    if (!(dt > 0)) return;
-    motion.copy_from(other.motion);
-    change.copy_from(other.change);
-  }
-};
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -1,7 +1,7 @@
 // icloth bench stability: the hard cases, one row each.
 #pragma once
 
-#include "app/verbs/bench.h"
+#include "app/bench/bench_options.h"
 
 namespace icloth {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/report/report.h"
-#include "app/verbs/bench.h"
+#include "app/bench/bench_options.h"
 #include "sim/error.h"
 #include "sim/simulator.h"
 

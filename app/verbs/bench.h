@@ -1,20 +1,9 @@
 // icloth bench: benchmark suites.
 #pragma once
 
-#include <string>
+#include "app/bench/bench_options.h"
 
 namespace icloth {
-
-struct BenchOptions {
-  std::string suite = "quick";
-  std::string out;     ///< folder of results.json; empty: none is written
-  std::string device;  ///< cpu, cuda or cuda:N; empty: cpu, then cuda where it is usable
-  int threads = 0;     ///< of the CPU builds; 0: all
-  bool quiet = false;  ///< no progress line
-  std::string only;    ///< stability, validation, solver: cases whose name holds this; empty: all
-  std::string frames;  ///< stability: folder for OBJ files of some of the states, empty: none
-  double soak = 60;    ///< stability: simulated time of the random dragging [s]
-};
 
 /// Runs a suite on every build that this machine has and prints a table. Returns 0, or 1 when a run
 /// was refused or left penetrations. Throws InputError.

@@ -6,6 +6,7 @@
 #include "app/machine.h"
 #include "app/options.h"
 #include "kernels/device_problem.h"
+#include "sim/assets.h"
 #include "sim/cuda_devices.h"
 #include "sim/scene_io.h"
 #include "sim/simulator.h"

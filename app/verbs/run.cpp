@@ -9,6 +9,7 @@
 #include "sim/error.h"
 #include "sim/mesh_io.h"
 #include "sim/scene_io.h"
+#include "sim/scene_meshes.h"
 
 namespace icloth {
 namespace {

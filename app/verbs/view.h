@@ -1,25 +1,9 @@
 // icloth view: the interactive window.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "sim/simulator.h"
+#include "app/view_options.h"
 
 namespace icloth {
-
-struct ViewOptions {
-  std::string scene = "scarf";         ///< built-in name, scene JSON or mesh file
-  std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
-  Build build = Build::cpu32;
-  int threads = 0;                ///< of the CPU builds; 0: all but the one that draws
-  std::string record_file;        ///< the session is written here at the end; empty: only Ctrl+S
-  std::string screenshot_folder;  ///< where F12 writes; empty: the current folder
-  std::string vertices = "auto";  ///< way to the GPU: auto or host
-  bool play = true;               ///< start running
-  bool play_script = false;       ///< apply the scene's scripted grabs as well
-  int width = 1280, height = 800;
-};
 
 /// Runs the window until it is closed. Returns the exit code 0. Throws DeviceError when there is
 /// no display or no OpenGL 4.5 core context, InputError when the scene cannot be loaded.
