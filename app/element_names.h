@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/intersections.h"
-#include "sim/report.h"
 #include "sim/scene.h"
+#include "sim/state/report.h"
 
 namespace icloth {
 

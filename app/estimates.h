@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/parameters.h"
-#include "sim/report.h"
+#include "sim/state/report.h"
 
 namespace icloth {
 

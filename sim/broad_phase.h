@@ -7,7 +7,7 @@
 #pragma once
 
 #include "sim/hash_pairs.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 #include "sim/tree_pairs.h"
 
 namespace icloth::ICLOTH_BUILD {

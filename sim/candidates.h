@@ -3,7 +3,7 @@
 
 #include "kernels/bvh.h"
 #include "kernels/parallel.h"
-#include "sim/topology.h"
+#include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -8,7 +8,7 @@
 #include "kernels/impact.h"
 #include "sim/broad_phase.h"
 #include "sim/constraints.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -3,7 +3,7 @@
 
 #include "sim/parameters.h"
 #include "sim/scene.h"
-#include "sim/topology.h"
+#include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
 

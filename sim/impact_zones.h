@@ -5,7 +5,7 @@
 #include "kernels/zone_solve.h"
 #include "sim/ccd.h"
 #include "sim/constraints.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

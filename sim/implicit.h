@@ -12,7 +12,7 @@
 #include "sim/linear_solver.h"
 #include "sim/plate_terms.h"
 #include "sim/proximity.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 #include "sim/time_rule.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -4,7 +4,7 @@
 #include "kernels/contact.h"
 #include "sim/broad_phase.h"
 #include "sim/constraints.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

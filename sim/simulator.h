@@ -9,8 +9,8 @@
 #include "kernels/device_positions.h"
 #include "sim/input.h"
 #include "sim/parameters.h"
-#include "sim/report.h"
 #include "sim/scene.h"
+#include "sim/state/report.h"
 
 namespace icloth {
 

@@ -1,7 +1,7 @@
 // What a step reports about the state it ends in.
 #pragma once
 
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

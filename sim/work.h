@@ -5,7 +5,7 @@
 
 #include "kernels/parallel.h"
 #include "sim/elastic_terms.h"
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -1,7 +1,7 @@
 // Anchors of the friction between yarns (kernels/yarn_friction.h) and its work.
 #pragma once
 
-#include "sim/state.h"
+#include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {
 

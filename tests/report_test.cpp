@@ -1,4 +1,4 @@
-#include "sim/report.h"
+#include "sim/state/report.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "sim/state.h"
+#include "sim/state/state.h"
 #include "sim/world.h"
 #include "tests/small_scenes.h"
 

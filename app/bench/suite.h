@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/report.h"
 #include "app/bench/bench_options.h"
+#include "app/report/report.h"
 #include "sim/error.h"
 #include "sim/simulator.h"
 

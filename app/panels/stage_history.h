@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/report.h"
+#include "sim/state/report.h"
 
 namespace icloth {
 

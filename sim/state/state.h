@@ -4,8 +4,8 @@
 #include "kernels/stencil.h"
 #include "kernels/yarn_friction.h"
 #include "sim/parameters.h"
-#include "sim/report.h"
-#include "sim/topology.h"
+#include "sim/state/report.h"
+#include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
 
