@@ -9,9 +9,9 @@
 // between yarns as well, without d (sim/elastic_terms.h, Linearization).
 #pragma once
 
+#include "sim/collision/proximity.h"
 #include "sim/linear_solver.h"
 #include "sim/plate_terms.h"
-#include "sim/proximity.h"
 #include "sim/state/state.h"
 #include "sim/time_rule.h"
 

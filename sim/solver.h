@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "sim/broad_phase.h"
-#include "sim/ccd.h"
+#include "sim/collision/broad_phase.h"
+#include "sim/collision/ccd.h"
+#include "sim/collision/impact_zones.h"
+#include "sim/collision/proximity.h"
 #include "sim/hands.h"
-#include "sim/impact_zones.h"
 #include "sim/implicit.h"
-#include "sim/proximity.h"
 #include "sim/simulator.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -2,7 +2,7 @@
 #define ICLOTH_BUILD cpu32
 #define ICLOTH_REAL float
 
-#include "sim/broad_phase.h"
+#include "sim/collision/broad_phase.h"
 
 #include <gtest/gtest.h>
 

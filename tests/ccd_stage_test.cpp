@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "kernels/elementary_ccd.h"
-#include "sim/ccd.h"
+#include "sim/collision/ccd.h"
 #include "tests/stage_support.h"
 
 namespace icloth::cpu32 {

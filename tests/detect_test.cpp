@@ -1,5 +1,5 @@
 // Detection over a whole mesh against all pairs, and against published complete lists.
-#include "sim/detect.h"
+#include "sim/collision/detect.h"
 
 #include <gtest/gtest.h>
 

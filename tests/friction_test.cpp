@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "sim/proximity.h"
+#include "sim/collision/proximity.h"
 #include "tests/stage_support.h"
 
 namespace icloth::cpu32 {

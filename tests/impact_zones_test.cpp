@@ -2,7 +2,7 @@
 #define ICLOTH_BUILD cpu32
 #define ICLOTH_REAL float
 
-#include "sim/impact_zones.h"
+#include "sim/collision/impact_zones.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <map>
 #include <numeric>
 
+#include "sim/collision/zone_trial.h"
 #include "sim/simulator.h"
-#include "sim/zone_trial.h"
 #include "tests/stage_support.h"
 
 namespace icloth::cpu32 {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/ccd.h"
-#include "sim/proximity.h"
+#include "sim/collision/ccd.h"
+#include "sim/collision/proximity.h"
 #include "tests/stage_support.h"
 
 namespace icloth::ICLOTH_BUILD {

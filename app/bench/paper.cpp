@@ -5,7 +5,7 @@
 #include "app/bench/frames.h"
 #include "app/bench/suite.h"
 #include "app/report/report.h"
-#include "sim/zone_trial.h"
+#include "sim/collision/zone_trial.h"
 
 namespace icloth {
 namespace {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "sim/detect.h"
+#include "sim/collision/detect.h"
 #include "sim/error.h"
 #include "sim/file_io.h"
 #include "sim/mesh_io.h"

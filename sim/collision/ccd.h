@@ -6,7 +6,7 @@
 #pragma once
 
 #include "kernels/impact.h"
-#include "sim/broad_phase.h"
+#include "sim/collision/broad_phase.h"
 #include "sim/constraints.h"
 #include "sim/state/state.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/contact.h"
-#include "sim/broad_phase.h"
+#include "sim/collision/broad_phase.h"
 #include "sim/constraints.h"
 #include "sim/state/state.h"
 

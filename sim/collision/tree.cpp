@@ -1,4 +1,4 @@
-#include "sim/tree.h"
+#include "sim/collision/tree.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/zone_trial.h"
+#include "sim/collision/zone_trial.h"
 
 #include <algorithm>
 #include <chrono>

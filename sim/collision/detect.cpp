@@ -1,8 +1,8 @@
-#include "sim/detect.h"
+#include "sim/collision/detect.h"
 
 #include <chrono>
 
-#include "sim/ccd.h"
+#include "sim/collision/ccd.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

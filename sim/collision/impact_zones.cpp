@@ -1,4 +1,4 @@
-#include "sim/impact_zones.h"
+#include "sim/collision/impact_zones.h"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 // its two boxes (the token; Fan et al. 2011), hence once.
 #pragma once
 
-#include "sim/candidates.h"
+#include "sim/collision/candidates.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/zone_solve.h"
-#include "sim/ccd.h"
+#include "sim/collision/ccd.h"
 #include "sim/constraints.h"
 #include "sim/state/state.h"
 

@@ -1,4 +1,4 @@
-#include "sim/proximity.h"
+#include "sim/collision/proximity.h"
 
 #include "kernels/distance.h"
 #include "kernels/parallel.h"

@@ -1,4 +1,4 @@
-#include "sim/ccd.h"
+#include "sim/collision/ccd.h"
 
 #include "kernels/elementary_ccd.h"
 #include "kernels/parallel.h"

@@ -1,4 +1,4 @@
-#include "sim/broad_phase.h"
+#include "sim/collision/broad_phase.h"
 
 #include <algorithm>
 

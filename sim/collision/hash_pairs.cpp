@@ -1,4 +1,4 @@
-#include "sim/hash_pairs.h"
+#include "sim/collision/hash_pairs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Candidate pairs by bounding volume trees: vertices against faces, edges against edges.
 #pragma once
 
-#include "sim/candidates.h"
-#include "sim/tree.h"
+#include "sim/collision/candidates.h"
+#include "sim/collision/tree.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -6,9 +6,9 @@
 // CCD round, and the next steps too while the cloth hardly moves.
 #pragma once
 
-#include "sim/hash_pairs.h"
+#include "sim/collision/hash_pairs.h"
+#include "sim/collision/tree_pairs.h"
 #include "sim/state/state.h"
-#include "sim/tree_pairs.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -1,4 +1,4 @@
-#include "sim/tree_pairs.h"
+#include "sim/collision/tree_pairs.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
