@@ -3,16 +3,16 @@
 //   Λ = W (θ − θ_rest)        curvature in material axes (Λ_uu, Λ_vv, Λ_uv) [1/m]
 //   E = ½ A Λᵀ D Λ            = ½ A (D11 Λ_uu² + D22 Λ_vv² + 2 D12 Λ_uu Λ_vv + 4 D33 Λ_uv²)
 //
-// W is constant and made for each face (sim/plates.h), so that the stiffness depends far less on
-// how the mesh is laid out than that of single hinges. Linear in the angles: the same gradients
-// ∂θ/∂x serve as for hinges.
+// W is constant and made for each face (sim/mechanics/plates.h), so that the stiffness depends far
+// less on how the mesh is laid out than that of single hinges. Linear in the angles: the same
+// gradients ∂θ/∂x serve as for hinges.
 #pragma once
 
 #include "kernels/bending.h"
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Rest data of a face, see sim/plates.h.
+/// Rest data of a face, see sim/mechanics/plates.h.
 struct PlateRest {
   Index hinge[3];  ///< −1 where there is none
   Real w[9];       ///< W, row after row: uu, vv, uv [1/m]

@@ -40,8 +40,9 @@ struct Snapshot {
   std::vector<Vec3d> positions;     ///< [m] (V)
   std::vector<Vec3d> velocities;    ///< [m/s] (V)
   std::vector<PairForce> friction;  ///< sorted by pair
-  /// Of an integrator that goes on from two states (sim/time_rule.h): the cloths' way and change of
-  /// velocity in the last step [m], [m/s], and its length [s]; empty and 0 where there is none.
+  /// Of an integrator that goes on from two states (sim/mechanics/time_rule.h): the cloths' way and
+  /// change of velocity in the last step [m], [m/s], and its length [s]; empty and 0 where there is
+  /// none.
   std::vector<Vec3d> past_motion{}, past_change{};
   double past_dt = 0;
   std::vector<FaceYarns> yarns{};  ///< (cloth faces), empty where no yarns rub

@@ -6,8 +6,8 @@
 #include "kernels/device.h"
 #include "kernels/hand_out.h"
 #include "kernels/parallel.h"
-#include "sim/fabrics.h"
-#include "sim/statistics.h"
+#include "sim/mechanics/energy.h"
+#include "sim/mechanics/fabrics.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -10,7 +10,7 @@
 #include "sim/collision/impact_zones.h"
 #include "sim/collision/proximity.h"
 #include "sim/hands.h"
-#include "sim/implicit.h"
+#include "sim/mechanics/implicit.h"
 #include "sim/simulator.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -15,9 +15,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "sim/mechanics/energy.h"
+#include "sim/mechanics/yarns.h"
 #include "sim/solver.h"
-#include "sim/statistics.h"
-#include "sim/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <random>
 
-#include "sim/plate_terms.h"
-#include "sim/plates.h"
+#include "sim/mechanics/plate_terms.h"
+#include "sim/mechanics/plates.h"
 #include "tests/mesh_layouts.h"
 
 namespace icloth::cpu64 {

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "sim/elastic_terms.h"
+#include "sim/mechanics/elastic_terms.h"
 
 namespace icloth::cpu64 {
 namespace {

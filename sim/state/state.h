@@ -16,7 +16,7 @@ struct Spring {
   Vec3r target;    ///< [m]
 };
 
-/// What a two-step integrator (sim/time_rule.h) goes on from.
+/// What a two-step integrator (sim/mechanics/time_rule.h) goes on from.
 struct Past {
   Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), accept
   Array<Vec3r> change;  ///< v0 − v₋₁ [m/s] (cloth_vertices), accept; 0 where the vertex touched

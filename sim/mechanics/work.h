@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels/parallel.h"
-#include "sim/elastic_terms.h"
+#include "sim/mechanics/elastic_terms.h"
 #include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {

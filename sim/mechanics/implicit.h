@@ -2,18 +2,19 @@
 // first, then where the last solve ended, as often as it missed tension (Newton).
 //
 //   [M + h(h+d)K + contacts + springs + air] Δv = h [f(x̂) + f_ext − K (x' + h v' − x̂ + d v')]
-//   x1 = x' + h (v' + Δv)                      h, x', v': sim/time_rule.h; Euler: dt, x0, v
+//   x1 = x' + h (v' + Δv)                      h, x', v': sim/mechanics/time_rule.h; Euler: dt, x0,
+//   v
 //
 // K: positive semi-definite stiffness of membrane and bending at x̂, with the measured fabric's
 // coefficients frozen at x0; d: stiffness-proportional damping [s]. f and K have the friction
-// between yarns as well, without d (sim/elastic_terms.h, Linearization).
+// between yarns as well, without d (sim/mechanics/elastic_terms.h, Linearization).
 #pragma once
 
 #include "sim/collision/proximity.h"
 #include "sim/linear_solver.h"
-#include "sim/plate_terms.h"
+#include "sim/mechanics/plate_terms.h"
+#include "sim/mechanics/time_rule.h"
 #include "sim/state/state.h"
-#include "sim/time_rule.h"
 
 namespace icloth::ICLOTH_BUILD {
 

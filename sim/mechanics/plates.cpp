@@ -1,4 +1,4 @@
-#include "sim/plates.h"
+#include "sim/mechanics/plates.h"
 
 #include <cmath>
 

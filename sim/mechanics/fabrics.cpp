@@ -1,9 +1,9 @@
-#include "sim/fabrics.h"
+#include "sim/mechanics/fabrics.h"
 
 #include <algorithm>
 
 #include "kernels/parallel.h"
-#include "sim/plates.h"
+#include "sim/mechanics/plates.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

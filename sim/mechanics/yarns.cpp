@@ -1,4 +1,4 @@
-#include "sim/yarns.h"
+#include "sim/mechanics/yarns.h"
 
 #include "kernels/parallel.h"
 

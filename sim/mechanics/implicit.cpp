@@ -1,11 +1,11 @@
-#include "sim/implicit.h"
+#include "sim/mechanics/implicit.h"
 
 #include <algorithm>
 #include <tuple>
 
 #include "kernels/parallel.h"
-#include "sim/work.h"
-#include "sim/yarns.h"
+#include "sim/mechanics/work.h"
+#include "sim/mechanics/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/statistics.h"
+#include "sim/mechanics/energy.h"
 
 #include <cstring>
 

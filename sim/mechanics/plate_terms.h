@@ -9,7 +9,7 @@
 // states of rest are exact; an oscillation faster than a few steps dies out a little later.
 #pragma once
 
-#include "sim/elastic_terms.h"
+#include "sim/mechanics/elastic_terms.h"
 
 namespace icloth::ICLOTH_BUILD {
 
