@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/constraints.h"
-#include "sim/linear_solver.h"
+#include "sim/linear/incidence.h"
+#include "sim/linear/linear_solver.h"
 
 namespace icloth::cpu32 {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "sim/aggregation.h"
+#include "sim/linear/aggregation.h"
 #include "sim/simulator.h"
 #include "tests/linear_system_support.h"
 

@@ -7,7 +7,7 @@
 
 #include "kernels/impact.h"
 #include "sim/collision/broad_phase.h"
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 #include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {

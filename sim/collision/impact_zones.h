@@ -4,7 +4,7 @@
 
 #include "kernels/zone_solve.h"
 #include "sim/collision/ccd.h"
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 #include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -3,7 +3,7 @@
 
 #include "kernels/contact.h"
 #include "sim/collision/broad_phase.h"
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 #include "sim/state/state.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "kernels/zone_solve.h"
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "sim/collision/proximity.h"
-#include "sim/linear_solver.h"
+#include "sim/linear/linear_solver.h"
 #include "sim/mechanics/plate_terms.h"
 #include "sim/mechanics/time_rule.h"
 #include "sim/state/state.h"

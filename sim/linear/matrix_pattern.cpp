@@ -1,4 +1,4 @@
-#include "sim/block_matrix.h"
+#include "sim/linear/matrix_pattern.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -1,8 +1,8 @@
 // The system that an implicit step solves, as the solver and its preconditioner see it.
 #pragma once
 
-#include "sim/block_matrix.h"
-#include "sim/couplings.h"
+#include "sim/linear/couplings.h"
+#include "sim/linear/matrix_pattern.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -1,4 +1,4 @@
-#include "sim/couplings.h"
+#include "sim/linear/couplings.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/parallel.h"
-#include "sim/hierarchy.h"
+#include "sim/linear/hierarchy.h"
 #include "sim/parameters.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -1,9 +1,9 @@
-#include "sim/hierarchy.h"
+#include "sim/linear/hierarchy.h"
 
 #include <algorithm>
 
 #include "kernels/parallel.h"
-#include "sim/aggregation.h"
+#include "sim/linear/aggregation.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

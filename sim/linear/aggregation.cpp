@@ -1,4 +1,4 @@
-#include "sim/aggregation.h"
+#include "sim/linear/aggregation.h"
 
 #include <algorithm>
 #include <utility>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels/multilevel.h"
-#include "sim/linear_system.h"
+#include "sim/linear/linear_system.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/multilevel.h"
-#include "sim/coarse_couplings.h"
+#include "sim/linear/coarse_couplings.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -1,4 +1,4 @@
-#include "sim/linear_solver.h"
+#include "sim/linear/linear_solver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels/contact.h"
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 
 namespace icloth::ICLOTH_BUILD {
 

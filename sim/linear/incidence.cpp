@@ -1,4 +1,4 @@
-#include "sim/constraints.h"
+#include "sim/linear/incidence.h"
 
 #include "kernels/partition_point.h"
 

@@ -1,4 +1,4 @@
-#include "sim/coarse_couplings.h"
+#include "sim/linear/coarse_couplings.h"
 
 #include "kernels/partition_point.h"
 
