@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/input.h"
+#include "sim/scene/input.h"
 
 namespace icloth {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/intersections.h"
-#include "sim/scene.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/scene.h"
 #include "sim/state/report.h"
 
 namespace icloth {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 #include "sim/state/report.h"
 
 namespace icloth {

@@ -6,7 +6,7 @@
 #include "app/element_names.h"
 #include "app/machine.h"
 #include "app/progress.h"
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 
 namespace icloth {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/run_statistics.h"
-#include "sim/input.h"
+#include "sim/scene/input.h"
 #include "sim/simulator.h"
 
 namespace icloth {

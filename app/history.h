@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "sim/input.h"
+#include "sim/scene/input.h"
 #include "sim/simulator.h"
 
 namespace icloth {

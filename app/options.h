@@ -19,7 +19,7 @@ struct SimulationOptions {
   int threads = 0;                ///< of the CPU builds; 0: all
   long steps = -1;                ///< -1: by time
   double time = -1;               ///< [s]; -1 (and steps -1): the scene's duration
-  std::string preset;             ///< name of a preset, sim/presets.h; empty: none
+  std::string preset;             ///< name of a preset, sim/scene/presets.h; empty: none
   bool repair_start = false;
   std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
   bool dump_config = false;            ///< print all parameters and stop

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth {
 

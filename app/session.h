@@ -17,12 +17,12 @@
 
 #include "app/history.h"
 #include "app/triple_buffer.h"
-#include "sim/input.h"
+#include "sim/scene/input.h"
 #include "sim/simulator.h"
 
 namespace icloth {
 
-/// Handles of a scene's scripted grabs are numbered from here (sim/input.h).
+/// Handles of a scene's scripted grabs are numbered from here (sim/scene/input.h).
 inline constexpr int kFirstScriptedHandle = 1000;
 
 struct SessionOptions {

@@ -22,8 +22,8 @@
 #include "render/gl_targets.h"
 #include "render/pick.h"
 #include "render/renderer.h"
-#include "sim/intersections.h"
-#include "sim/world.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

@@ -11,7 +11,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Rest data of a hinge, see sim/world.h.
+/// Rest data of a hinge, see sim/scene/world.h.
 struct HingeRest {
   Int4 v;
   Index fabric0, fabric1;  ///< materials of the two faces

@@ -27,7 +27,7 @@ ICLOTH_HD constexpr Sym2 operator-(Sym2 a, Sym2 b) {
   return {a.uu - b.uu, a.uv - b.uv, a.vv - b.vv};
 }
 
-/// Fabric as the kernels see it; see sim/material.h.
+/// Fabric as the kernels see it; see sim/scene/material.h.
 struct Fabric {
   Real stretching[6][4];  ///< c11 c12 c22 c33 [N/m]
   Real bending[3][5];     ///< [N·m]

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/matrix.h"
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 

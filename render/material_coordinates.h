@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

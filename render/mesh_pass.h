@@ -4,7 +4,7 @@
 #include "render/matrix.h"
 #include "render/shader_program.h"
 #include "render/vertex_buffers.h"
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

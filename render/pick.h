@@ -4,7 +4,7 @@
 #include <span>
 
 #include "render/camera.h"
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

@@ -15,7 +15,7 @@
 #include "render/overlay.h"
 #include "render/shader_program.h"
 #include "sim/error.h"
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth {
 

@@ -10,8 +10,8 @@
 #include "render/camera.h"
 #include "render/image.h"
 #include "render/shared_vertices.h"
-#include "sim/input.h"
-#include "sim/world.h"
+#include "sim/scene/input.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/cuda_vertices.h"
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

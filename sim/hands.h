@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/input.h"
-#include "sim/world.h"
+#include "sim/scene/input.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

@@ -6,7 +6,7 @@
 
 #include "sim/cuda_devices.h"
 #include "sim/error.h"
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 // One solver a build; each is compiled from sim/solver.cpp in its own namespace.
 namespace icloth::cpu32 {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "kernels/device_positions.h"
-#include "sim/input.h"
-#include "sim/parameters.h"
-#include "sim/scene.h"
+#include "sim/scene/input.h"
+#include "sim/scene/parameters.h"
+#include "sim/scene/scene.h"
 #include "sim/state/report.h"
 
 namespace icloth {
@@ -85,7 +85,7 @@ bool build_available(Build build, std::string* reason = nullptr);
 /// The scene must outlive nothing: the simulator keeps its share. Throws DeviceError when the build
 /// is not available, InputError when the scene cannot be simulated (massless vertices, coordinates
 /// that single precision does not resolve …).
-/// Start intersections are not checked here, see sim/intersections.h.
+/// Start intersections are not checked here, see sim/scene/intersections.h.
 /// A cuda32 simulator stays on the device that is chosen now, whichever thread calls it.
 std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Scene> scene);
 

@@ -5,7 +5,7 @@
 
 #include "app/bench/trial.h"
 #include "app/validation/shadow.h"
-#include "sim/presets.h"
+#include "sim/scene/presets.h"
 
 namespace icloth {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "sim/body_io.h"
 #include "sim/error.h"
-#include "sim/material_io.h"
 #include "sim/mesh_io.h"
-#include "sim/scene_io.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/scene_io.h"
 #include "tests/temporary_folder.h"
 
 namespace icloth {

@@ -13,7 +13,7 @@
 
 #include "kernels/elementary_ccd.h"
 #include "sim/mesh_io.h"
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {

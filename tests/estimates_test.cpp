@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/scene/world.h"
 #include "sim/simulator.h"
-#include "sim/world.h"
 #include "tests/small_scenes.h"
 
 namespace icloth {

@@ -1,6 +1,6 @@
 // The project's own exact triangle test: against integers, and against what find_intersections
 // uses where the program has CGAL.
-#include "sim/exact_triangles.h"
+#include "sim/scene/exact_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 #include "tests/oracle/integer_triangles.h"
 
 namespace icloth {

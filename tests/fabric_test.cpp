@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "kernels/strain_limit.h"
-#include "sim/material_io.h"
+#include "sim/scene/material_io.h"
 
 namespace icloth::cpu64 {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 
 #include <gtest/gtest.h>
 

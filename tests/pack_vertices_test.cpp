@@ -7,7 +7,7 @@
 #include <cstring>
 #include <random>
 
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "sim/presets.h"
+#include "sim/scene/presets.h"
 
 namespace icloth {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 #include <gtest/gtest.h>
 

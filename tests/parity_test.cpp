@@ -6,8 +6,8 @@
 #include <iterator>
 #include <random>
 
-#include "sim/intersections.h"
-#include "sim/scene_io.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 #include "tests/parity_stages.h"
 #include "tests/small_scenes.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {

@@ -1,9 +1,9 @@
 // Start states that intersect a little are separated, and can be simulated then.
-#include "sim/repair.h"
+#include "sim/scene/repair.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 #include "sim/simulator.h"
 #include "tests/small_scenes.h"
 

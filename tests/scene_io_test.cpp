@@ -1,14 +1,14 @@
 // Scene files, built-in scenes, overrides, plain meshes, moving obstacles.
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "sim/intersections.h"
-#include "sim/material_io.h"
-#include "sim/world.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/world.h"
 #include "tests/temporary_folder.h"
 
 namespace icloth {

@@ -7,7 +7,7 @@
 #include "render/renderer.h"
 #include "sim/error.h"
 #include "sim/mesh_io.h"
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 #include "tests/golden.h"
 
 namespace icloth {

@@ -1,5 +1,5 @@
 // Procedural meshes: counts, quality, orientation, closedness.
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/material_io.h"
-#include "sim/scene.h"
-#include "sim/shapes.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/scene.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth::testing {
 

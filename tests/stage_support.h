@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "sim/scene/world.h"
 #include "sim/state/state.h"
-#include "sim/world.h"
 #include "tests/small_scenes.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 #include "sim/simulator.h"
 #include "tests/small_scenes.h"
 

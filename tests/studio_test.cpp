@@ -7,7 +7,7 @@
 #include "render/lights.h"
 #include "render/material_coordinates.h"
 #include "render/overlay.h"
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "app/bench/trial.h"
 #include "app/progress.h"
 #include "app/report/report.h"
-#include "sim/presets.h"
+#include "sim/scene/presets.h"
 
 namespace icloth {
 namespace {

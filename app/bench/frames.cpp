@@ -2,7 +2,7 @@
 
 #include "app/headless.h"
 #include "app/progress.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 

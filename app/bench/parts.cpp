@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/headless.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 namespace {

@@ -7,7 +7,7 @@
 #include "app/validation/shadow.h"
 #include "app/validation/strips.h"
 #include "sim/error.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 namespace {

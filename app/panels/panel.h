@@ -12,8 +12,8 @@
 #include "app/parameter_edits.h"
 #include "app/session.h"
 #include "render/renderer.h"
-#include "sim/intersections.h"
-#include "sim/world.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 

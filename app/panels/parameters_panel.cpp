@@ -4,7 +4,7 @@
 #include "app/panels/hover.h"
 #include "app/panels/panel.h"
 #include "app/theme.h"
-#include "sim/presets.h"
+#include "sim/scene/presets.h"
 
 namespace icloth {
 

@@ -7,9 +7,9 @@
 
 #include "app/suite_case.h"
 #include "sim/error.h"
-#include "sim/intersections.h"
 #include "sim/mesh_io.h"
-#include "sim/scene_meshes.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth::stability {
 namespace {

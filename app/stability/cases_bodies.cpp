@@ -5,7 +5,7 @@
 #include "app/stability/case_run.h"
 #include "app/stability/cases.h"
 #include "app/stability/scenes.h"
-#include "sim/rotation.h"
+#include "sim/scene/rotation.h"
 
 namespace icloth::stability {
 namespace {

@@ -5,8 +5,8 @@
 #include "app/stability/case_run.h"
 #include "app/stability/cases.h"
 #include "app/stability/scenes.h"
-#include "sim/rotation.h"
-#include "sim/scene_io.h"
+#include "sim/scene/rotation.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth::stability {
 namespace {

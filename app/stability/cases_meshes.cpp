@@ -5,8 +5,8 @@
 #include "app/stability/cases.h"
 #include "app/stability/scenes.h"
 #include "sim/error.h"
-#include "sim/intersections.h"
 #include "sim/mesh_io.h"
+#include "sim/scene/intersections.h"
 
 namespace icloth::stability {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/material_io.h"
+#include "sim/scene/material_io.h"
 
 namespace icloth::stability {
 std::shared_ptr<Scene> new_scene(const char* name, double edge) {

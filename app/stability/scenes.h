@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "sim/scene.h"
-#include "sim/shapes.h"
+#include "sim/scene/scene.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth::stability {
 

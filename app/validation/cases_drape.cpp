@@ -7,7 +7,7 @@
 #include "app/validation/cases.h"
 #include "app/validation/shadow.h"
 #include "app/validation/strips.h"
-#include "sim/material_io.h"
+#include "sim/scene/material_io.h"
 
 namespace icloth::validation {
 namespace {

@@ -5,7 +5,7 @@
 #include "app/validation/case_run.h"
 #include "app/validation/cases.h"
 #include "app/validation/strips.h"
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth::validation {
 namespace {

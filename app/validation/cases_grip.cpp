@@ -7,7 +7,7 @@
 #include "app/validation/cases.h"
 #include "app/validation/references.h"
 #include "app/validation/strips.h"
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth::validation {
 namespace {

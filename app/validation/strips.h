@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth::validation {
 

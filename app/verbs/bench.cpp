@@ -15,7 +15,7 @@
 #include "sim/cuda_devices.h"
 #include "sim/error.h"
 #include "sim/file_io.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 namespace {

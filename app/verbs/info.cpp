@@ -8,7 +8,7 @@
 #include "kernels/device_problem.h"
 #include "sim/assets.h"
 #include "sim/cuda_devices.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 #if defined(ICLOTH_HAS_RENDER)
 #include "render/gl_context.h"

@@ -14,8 +14,8 @@
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
 #include "sim/error.h"
-#include "sim/intersections.h"
-#include "sim/scene_io.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "app/headless.h"
 #include "app/options.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 

@@ -8,8 +8,8 @@
 #include "kernels/profile.h"
 #include "sim/error.h"
 #include "sim/mesh_io.h"
-#include "sim/scene_io.h"
-#include "sim/scene_meshes.h"
+#include "sim/scene/scene_io.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "app/viewer.h"
 #include "sim/error.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 

@@ -3,7 +3,7 @@
 
 #include "kernels/parallel.h"
 #include "sim/linear/hierarchy.h"
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth::ICLOTH_BUILD {
 

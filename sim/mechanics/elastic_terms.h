@@ -3,7 +3,7 @@
 
 #include "kernels/strain_limit.h"
 #include "kernels/yarn_friction.h"
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 #include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {

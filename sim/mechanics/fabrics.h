@@ -1,8 +1,8 @@
 // The fabrics of a scene as the kernels see them.
 #pragma once
 
-#include "sim/parameters.h"
-#include "sim/scene.h"
+#include "sim/scene/parameters.h"
+#include "sim/scene/scene.h"
 #include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "kernels/platform.h"
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -3,7 +3,7 @@
 
 #include "kernels/plate.h"
 #include "kernels/stencil.h"
-#include "sim/world.h"
+#include "sim/scene/world.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -3,8 +3,8 @@
 
 #include "app/camera_json.h"
 #include "sim/file_io.h"
-#include "sim/input.h"
-#include "sim/material_io.h"
+#include "sim/scene/input.h"
+#include "sim/scene/material_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "sim/mesh_formats.h"
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/input.h"
-#include "sim/scene_io.h"
+#include "sim/scene/input.h"
+#include "sim/scene/scene_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 

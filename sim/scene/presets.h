@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth {
 

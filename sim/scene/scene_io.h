@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 
@@ -17,8 +17,9 @@ struct SceneLimits {
 
 /// SCENE argument of the command line: built-in name, scene JSON, or mesh file.
 /// `overrides` are --set arguments "KEY=VALUE"; keys are parameters, "triangles" (of all grids
-/// together), "preset" (sim/presets.h), or "repair_start" (on: shallow intersections are separated,
-/// sim/repair.h). Throws InputError with one line: file, element, value, what was expected.
+/// together), "preset" (sim/scene/presets.h), or "repair_start" (on: shallow intersections are
+/// separated, sim/scene/repair.h). Throws InputError with one line: file, element, value, what was
+/// expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits = {});

@@ -1,4 +1,4 @@
-#include "sim/input.h"
+#include "sim/scene/input.h"
 
 #include <algorithm>
 #include <charconv>

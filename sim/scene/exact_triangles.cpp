@@ -1,4 +1,4 @@
-#include "sim/exact_triangles.h"
+#include "sim/scene/exact_triangles.h"
 
 #include <algorithm>
 #include <bit>

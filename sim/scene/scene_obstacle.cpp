@@ -3,7 +3,7 @@
 #include "sim/body_io.h"
 #include "sim/file_io.h"
 #include "sim/mesh_io.h"
-#include "sim/scene_json.h"
+#include "sim/scene/scene_json.h"
 
 namespace icloth {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/material.h"
 #include "sim/mesh.h"
-#include "sim/parameters.h"
+#include "sim/scene/material.h"
+#include "sim/scene/parameters.h"
 
 namespace icloth {
 
@@ -65,7 +65,7 @@ struct CameraPose {
   double fov = 35;  ///< vertical [degrees]
 };
 
-/// What the repair of a start state did (sim/repair.h).
+/// What the repair of a start state did (sim/scene/repair.h).
 struct StartRepair {
   std::size_t pairs_before = 0, pairs_left = 0;  ///< intersecting pairs of faces
   std::size_t moved = 0;                         ///< vertices that are somewhere else now

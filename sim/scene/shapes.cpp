@@ -1,4 +1,4 @@
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/scene_io.h"
+#include "sim/scene/scene_io.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,11 +9,11 @@
 #include "sim/assets.h"
 #include "sim/error.h"
 #include "sim/file_io.h"
-#include "sim/material_io.h"
 #include "sim/mesh_io.h"
-#include "sim/presets.h"
-#include "sim/repair.h"
-#include "sim/scene_json.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/presets.h"
+#include "sim/scene/repair.h"
+#include "sim/scene/scene_json.h"
 
 namespace icloth {
 namespace {

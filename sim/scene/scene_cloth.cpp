@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "sim/assets.h"
-#include "sim/material_io.h"
 #include "sim/mesh_io.h"
-#include "sim/scene_json.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/scene_json.h"
 
 namespace icloth {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "sim/json_reader.h"
-#include "sim/scene_io.h"
-#include "sim/shapes.h"
+#include "sim/scene/scene_io.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 

@@ -1,4 +1,4 @@
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "kernels/over_ranges.h"
-#include "sim/exact_triangles.h"
+#include "sim/scene/exact_triangles.h"
 
 #if defined(ICLOTH_HAS_CGAL)
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,4 +1,4 @@
-#include "sim/presets.h"
+#include "sim/scene/presets.h"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "sim/parameters.h"
+#include "sim/scene/parameters.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sim/material.h"
+#include "sim/scene/material.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/mesh_io.h"
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 

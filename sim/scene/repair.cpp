@@ -1,4 +1,4 @@
-#include "sim/repair.h"
+#include "sim/scene/repair.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/intersections.h"
+#include "sim/scene/intersections.h"
 
 namespace icloth {
 namespace {

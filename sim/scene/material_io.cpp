@@ -1,4 +1,4 @@
-#include "sim/material_io.h"
+#include "sim/scene/material_io.h"
 
 #include <algorithm>
 #include <cmath>

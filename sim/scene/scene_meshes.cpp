@@ -1,4 +1,4 @@
-#include "sim/scene_meshes.h"
+#include "sim/scene/scene_meshes.h"
 
 #include <string>
 

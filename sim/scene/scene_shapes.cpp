@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/rotation.h"
-#include "sim/scene_json.h"
+#include "sim/scene/rotation.h"
+#include "sim/scene/scene_json.h"
 
 namespace icloth {
 namespace {

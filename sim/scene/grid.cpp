@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/shapes.h"
+#include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {

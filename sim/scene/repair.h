@@ -1,7 +1,7 @@
 // Repair of a start state: separates faces that intersect a little.
 #pragma once
 
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 

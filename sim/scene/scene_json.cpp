@@ -1,5 +1,5 @@
 // Top level of a scene file: settings, scripted grabs, cameras.
-#include "sim/scene_json.h"
+#include "sim/scene/scene_json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "sim/material.h"
+#include "sim/scene/material.h"
 
 namespace icloth {
 

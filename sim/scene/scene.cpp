@@ -1,9 +1,9 @@
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/rotation.h"
+#include "sim/scene/rotation.h"
 
 namespace icloth {
 namespace {

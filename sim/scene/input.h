@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "kernels/vec.h"
-#include "sim/parameters.h"
-#include "sim/scene.h"
+#include "sim/scene/parameters.h"
+#include "sim/scene/scene.h"
 
 namespace icloth {
 
