@@ -19,9 +19,9 @@
 #include "app/verbs/replay.h"
 #include "app/verbs/run.h"
 #include "app/verbs/view.h"
-#include "sim/assets.h"
-#include "sim/error.h"
-#include "sim/text.h"
+#include "sim/files/assets.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "app/machine.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
 
 namespace icloth {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/theme.h"
 #include "render/ui_painter.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 

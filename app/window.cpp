@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "app/bindings.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 

@@ -7,7 +7,7 @@
 #include "render/cuda_vertices.h"
 #include "render/gl_context_egl.h"
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/simulator.h"
 
 namespace icloth {

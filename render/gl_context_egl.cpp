@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "render/cuda_vertices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 

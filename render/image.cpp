@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/vec.h"
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 
 namespace icloth {
 

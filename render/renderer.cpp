@@ -14,7 +14,7 @@
 #include "render/mesh_pass.h"
 #include "render/overlay.h"
 #include "render/shader_program.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/scene/parameters.h"
 
 namespace icloth {

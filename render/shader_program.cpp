@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 #if defined(ICLOTH_HAS_CUDA)
 // Defined in sim/cuda/device_query.cu.

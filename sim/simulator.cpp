@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/scene/world.h"
 
 // One solver a build; each is compiled from sim/solver.cpp in its own namespace.

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "sim/body_io.h"
-#include "sim/error.h"
-#include "sim/mesh_io.h"
+#include "sim/files/body_io.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/scene_io.h"
 #include "tests/temporary_folder.h"

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "kernels/device_problem.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/simulator.h"
 #include "tests/small_scenes.h"
 

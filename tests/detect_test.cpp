@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "kernels/elementary_ccd.h"
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/shapes.h"
 
 namespace icloth {

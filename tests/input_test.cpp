@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 using namespace icloth;
 

@@ -10,7 +10,7 @@
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "tests/fake_device.h"
 #include "tests/small_scenes.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <random>
 
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 #include "tests/oracle/integer_triangles.h"
 
 using namespace icloth;

@@ -1,5 +1,5 @@
 // Readers and writers of meshes and point caches.
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "sim/body_io.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/body_io.h"
+#include "sim/files/mesh_formats.h"
 #include "tests/temporary_folder.h"
 
 namespace icloth {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/error.h"
-#include "sim/text.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
 
 using namespace icloth;
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "app/verbs/ccd.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

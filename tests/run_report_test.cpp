@@ -8,7 +8,7 @@
 
 #include "app/element_names.h"
 #include "app/run_statistics.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 using namespace icloth;
 

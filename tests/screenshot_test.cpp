@@ -5,8 +5,8 @@
 
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
-#include "sim/error.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/shapes.h"
 #include "tests/golden.h"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 
 namespace icloth {
 namespace {

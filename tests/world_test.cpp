@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 using namespace icloth;
 

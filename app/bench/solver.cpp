@@ -7,7 +7,7 @@
 #include "app/bench/suite.h"
 #include "app/report/report.h"
 #include "kernels/profile.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

@@ -5,8 +5,8 @@
 #include "app/bench/suite.h"
 #include "app/machine.h"
 #include "app/stability/case_run.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
 
 namespace icloth {
 namespace {

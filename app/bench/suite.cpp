@@ -7,7 +7,7 @@
 #include "app/options.h"
 #include "kernels/device_problem.h"
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

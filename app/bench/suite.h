@@ -8,7 +8,7 @@
 
 #include "app/bench/bench_options.h"
 #include "app/report/report.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/simulator.h"
 
 namespace icloth {

@@ -6,7 +6,7 @@
 #include "app/headless.h"
 #include "app/validation/shadow.h"
 #include "app/validation/strips.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

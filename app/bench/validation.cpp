@@ -4,8 +4,8 @@
 
 #include "app/bench/suite.h"
 #include "app/validation/case_run.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
 
 namespace icloth {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "sim/file_io.h"
+#include "sim/files/file_io.h"
 
 namespace icloth {
 namespace {

@@ -4,8 +4,8 @@
 #include "app/stability/case_run.h"
 #include "app/stability/cases.h"
 #include "app/stability/scenes.h"
-#include "sim/error.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/intersections.h"
 
 namespace icloth::stability {

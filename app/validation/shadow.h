@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 
 namespace icloth::validation {
 

@@ -13,8 +13,8 @@
 #include "app/headless.h"
 #include "app/machine.h"
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/verbs/query_file.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "app/element_names.h"
-#include "sim/error.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 
 namespace icloth {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "sim/collision/detect.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_io.h"
 #include "sim/simulator.h"
 
 namespace icloth {

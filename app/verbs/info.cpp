@@ -6,8 +6,8 @@
 #include "app/machine.h"
 #include "app/options.h"
 #include "kernels/device_problem.h"
-#include "sim/assets.h"
 #include "sim/cuda_devices.h"
+#include "sim/files/assets.h"
 #include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 #if defined(ICLOTH_HAS_RENDER)

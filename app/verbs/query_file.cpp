@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 #if defined(ICLOTH_HAS_ZLIB)
 #include <zlib.h>

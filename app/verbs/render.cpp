@@ -13,7 +13,7 @@
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_io.h"
 

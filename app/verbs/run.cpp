@@ -6,8 +6,8 @@
 
 #include "app/headless.h"
 #include "kernels/profile.h"
-#include "sim/error.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/scene_io.h"
 #include "sim/scene/scene_meshes.h"
 

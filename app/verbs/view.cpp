@@ -1,7 +1,7 @@
 #include "app/verbs/view.h"
 
 #include "app/viewer.h"
-#include "sim/error.h"
+#include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

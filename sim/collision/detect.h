@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 
 namespace icloth {
 

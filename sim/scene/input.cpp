@@ -5,9 +5,9 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/json_reader.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/json_reader.h"
 
 // A recording is JSON, one line a step:
 //   {"icloth_recording": 1, "scene": …, "build": …, "overrides": […], "steps": [

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/assets.h"
-#include "sim/error.h"
-#include "sim/json_reader.h"
+#include "sim/files/assets.h"
+#include "sim/files/error.h"
+#include "sim/files/json_reader.h"
 
 namespace icloth {
 namespace {

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/error.h"
-#include "sim/text.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 #include "sim/scene/material.h"
 #include "sim/scene/parameters.h"
 

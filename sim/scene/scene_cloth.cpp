@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/assets.h"
-#include "sim/mesh_io.h"
+#include "sim/files/assets.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/scene_json.h"
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <numbers>
 
-#include "sim/assets.h"
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/mesh_io.h"
+#include "sim/files/assets.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/presets.h"
 #include "sim/scene/repair.h"

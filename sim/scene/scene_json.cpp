@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "sim/error.h"
-#include "sim/text.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {

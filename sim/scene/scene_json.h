@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "sim/json_reader.h"
+#include "sim/files/json_reader.h"
 #include "sim/scene/scene_io.h"
 #include "sim/scene/shapes.h"
 

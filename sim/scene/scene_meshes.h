@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {

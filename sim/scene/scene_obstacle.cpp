@@ -1,8 +1,8 @@
 // Obstacles of a scene file.
-#include "sim/assets.h"
-#include "sim/body_io.h"
-#include "sim/file_io.h"
-#include "sim/mesh_io.h"
+#include "sim/files/assets.h"
+#include "sim/files/body_io.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_io.h"
 #include "sim/scene/scene_json.h"
 
 namespace icloth {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "app/camera_json.h"
-#include "sim/file_io.h"
+#include "sim/files/file_io.h"
 #include "sim/scene/input.h"
 #include "sim/scene/material_io.h"
 #include "tests/fuzz/support.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "sim/mesh_formats.h"
+#include "sim/files/mesh_formats.h"
 #include "sim/scene/scene_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"

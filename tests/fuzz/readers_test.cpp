@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <new>
 
-#include "sim/file_io.h"
+#include "sim/files/file_io.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/error.h"
-#include "sim/mesh.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh.h"
 
 namespace icloth::fuzz {
 

@@ -1,4 +1,4 @@
-#include "sim/assets.h"
+#include "sim/files/assets.h"
 
 #include <unistd.h>
 

@@ -1,9 +1,9 @@
 // What the formats of point caches have in common.
 #include <string>
 
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 

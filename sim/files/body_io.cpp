@@ -1,14 +1,14 @@
 // The one file that includes assimp.
-#include "sim/body_io.h"
+#include "sim/files/body_io.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/mesh_io.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_io.h"
 
 #if defined(ICLOTH_HAS_ASSIMP)
 #include <assimp/config.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 
 namespace icloth {
 

@@ -1,4 +1,4 @@
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

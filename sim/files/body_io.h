@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/mesh.h"
+#include "sim/files/mesh.h"
 
 namespace icloth {
 

@@ -1,11 +1,11 @@
-#include "sim/json_reader.h"
+#include "sim/files/json_reader.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/text.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {

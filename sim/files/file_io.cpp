@@ -1,4 +1,4 @@
-#include "sim/file_io.h"
+#include "sim/files/file_io.h"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "sim/error.h"
+#include "sim/files/error.h"
 
 namespace icloth {
 namespace {

@@ -1,8 +1,8 @@
 // PC2 point caches: 32 bytes of header, then frames of single-precision positions, little endian.
 #include <cstring>
 
-#include "sim/error.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 namespace {

@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "sim/error.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 namespace {

@@ -1,11 +1,11 @@
-#include "sim/mesh_io.h"
+#include "sim/files/mesh_io.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "sim/error.h"
-#include "sim/file_io.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 namespace {

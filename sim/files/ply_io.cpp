@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "sim/error.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sim/error.h"
-#include "sim/mesh_formats.h"
+#include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 
 namespace icloth {
 namespace {

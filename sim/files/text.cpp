@@ -1,4 +1,4 @@
-#include "sim/text.h"
+#include "sim/files/text.h"
 
 #include <algorithm>
 #include <numeric>
