@@ -11,7 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "kernels/over_ranges.h"
+#include "kernels/parallel/over_ranges.h"
 #include "sim/cuda_devices.h"
 
 namespace icloth {

@@ -1,8 +1,8 @@
 // One row of a product with a symmetric block-sparse matrix that stores its upper half.
 #pragma once
 
-#include "kernels/array.h"
 #include "kernels/lanes.h"
+#include "kernels/parallel/array.h"
 #include "kernels/stencil.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "kernels/array.h"
 #include "kernels/device_positions.h"
+#include "kernels/parallel/array.h"
 #if defined(__CUDACC__)
 #include "kernels/device_positions_cuda.h"
 #endif

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "kernels/block_matrix.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 
 namespace icloth::ICLOTH_BUILD {
 

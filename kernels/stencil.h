@@ -1,7 +1,7 @@
 // Small index and weight records that the stages pass around.
 #pragma once
 
-#include "kernels/array.h"
+#include "kernels/parallel/array.h"
 #include "kernels/vec.h"
 
 namespace icloth::ICLOTH_BUILD {

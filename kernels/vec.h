@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth {
 

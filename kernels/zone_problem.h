@@ -7,7 +7,7 @@
 // (the scaling of ARCSim). Multipliers are in metres: those of an impulse, times mean(1/m).
 #pragma once
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "kernels/stencil.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 #include "render/gl_context.h"
 
 namespace icloth {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "kernels/device.h"
 #include "kernels/hand_out.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/device.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/fabrics.h"
 

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "tests/stage_support.h"
 
 namespace icloth::cpu32 {

@@ -7,7 +7,7 @@
 #include <array>
 #include <thread>
 
-#include "kernels/device_problem.h"
+#include "kernels/parallel/device_problem.h"
 #include "sim/files/error.h"
 #include "sim/simulator.h"
 #include "tests/small_scenes.h"

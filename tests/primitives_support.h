@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/device.h"
+#include "kernels/parallel/parallel.h"
 
 #if !defined(__CUDACC__)
 #include <tbb/global_control.h>

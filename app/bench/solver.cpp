@@ -6,7 +6,7 @@
 #include "app/bench/frames.h"
 #include "app/bench/suite.h"
 #include "app/report/report.h"
-#include "kernels/profile.h"
+#include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 
 namespace icloth {

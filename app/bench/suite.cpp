@@ -5,7 +5,7 @@
 
 #include "app/machine.h"
 #include "app/options.h"
-#include "kernels/device_problem.h"
+#include "kernels/parallel/device_problem.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"
 

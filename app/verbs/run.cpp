@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "app/headless.h"
-#include "kernels/profile.h"
+#include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/scene/scene_io.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/bvh.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {

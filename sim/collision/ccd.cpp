@@ -1,7 +1,7 @@
 #include "sim/collision/ccd.h"
 
 #include "kernels/elementary_ccd.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

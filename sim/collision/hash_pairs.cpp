@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/partition_point.h"
+#include "kernels/parallel/partition_point.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

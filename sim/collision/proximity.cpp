@@ -1,8 +1,8 @@
 #include "sim/collision/proximity.h"
 
 #include "kernels/distance.h"
-#include "kernels/parallel.h"
-#include "kernels/partition_point.h"
+#include "kernels/parallel/parallel.h"
+#include "kernels/parallel/partition_point.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/bvh.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -2,7 +2,7 @@
 // get how near to the optimum.
 #pragma once
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 #include "sim/scene/parameters.h"
 
 namespace icloth {

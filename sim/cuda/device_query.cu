@@ -1,7 +1,7 @@
 // What sim/cuda_devices.h asks the CUDA runtime.
 #include <algorithm>
 
-#include "kernels/device.h"
+#include "kernels/parallel/device.h"
 #include "sim/cuda_devices.h"
 
 namespace icloth::cuda32 {

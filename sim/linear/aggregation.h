@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth {
 

@@ -1,6 +1,6 @@
 #include "sim/linear/coarse_couplings.h"
 
-#include "kernels/partition_point.h"
+#include "kernels/parallel/partition_point.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/linear/aggregation.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -1,7 +1,7 @@
 // Lists shared by proximity and impact zones: which constraints act on a vertex.
 #pragma once
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "kernels/stencil.h"
 
 namespace icloth::ICLOTH_BUILD {

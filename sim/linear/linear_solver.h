@@ -1,7 +1,7 @@
 // Preconditioned conjugate gradients on 3×3 blocks; contacts are applied without assembling them.
 #pragma once
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/linear/hierarchy.h"
 #include "sim/scene/parameters.h"
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "kernels/bending.h"
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "kernels/strain_limit.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/mechanics/work.h"
 #include "sim/mechanics/yarns.h"
 

@@ -9,7 +9,7 @@
 // 0.
 #pragma once
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 #include "sim/scene/parameters.h"
 
 namespace icloth::ICLOTH_BUILD {

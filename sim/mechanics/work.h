@@ -3,7 +3,7 @@
 // the solve applied: linearised at `point`, with dv its solution (≥ cloth_vertices).
 #pragma once
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 #include "sim/mechanics/elastic_terms.h"
 #include "sim/state/state.h"
 

@@ -1,6 +1,6 @@
 #include "sim/mechanics/yarns.h"
 
-#include "kernels/parallel.h"
+#include "kernels/parallel/parallel.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "kernels/over_ranges.h"
+#include "kernels/parallel/over_ranges.h"
 #include "sim/scene/exact_triangles.h"
 
 #if defined(ICLOTH_HAS_CGAL)

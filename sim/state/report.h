@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth {
 

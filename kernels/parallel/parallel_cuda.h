@@ -1,4 +1,5 @@
-// The primitives on a CUDA device. Included by kernels/parallel.h, which says what they do.
+// The primitives on a CUDA device. Included by kernels/parallel/parallel.h, which says what they
+// do.
 //
 // Everything runs in order on the default stream; only results for the host are waited for. How
 // the work is divided depends on n alone, never on the device, so that sums keep their bits.
@@ -13,7 +14,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "kernels/cuda_check.h"
+#include "kernels/parallel/cuda_check.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
@@ -349,4 +350,4 @@ void for_each_team(const char* name, Index teams, const F& f) {
 
 }  // namespace icloth::ICLOTH_BUILD
 
-#include "kernels/device_team_cuda.h"
+#include "kernels/parallel/device_team_cuda.h"

@@ -1,4 +1,5 @@
-// The primitives on the CPU, over oneTBB. Included by kernels/parallel.h, which says what they do.
+// The primitives on the CPU, over oneTBB. Included by kernels/parallel/parallel.h, which says what
+// they do.
 //
 // Few elements are done by the calling thread: handing work over costs about a microsecond.
 #pragma once
@@ -11,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/over_ranges.h"
+#include "kernels/parallel/over_ranges.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
@@ -168,6 +169,6 @@ void for_each_team(const char* name, Index teams, const F& f) {
 
 }  // namespace icloth::ICLOTH_BUILD
 
-#include "kernels/collect_cpu.h"
-#include "kernels/device_team_cpu.h"
-#include "kernels/sort_cpu.h"
+#include "kernels/parallel/collect_cpu.h"
+#include "kernels/parallel/device_team_cpu.h"
+#include "kernels/parallel/sort_cpu.h"

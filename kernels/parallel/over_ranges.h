@@ -5,8 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "kernels/platform.h"
-#include "kernels/task_fence.h"
+#include "kernels/parallel/platform.h"
+#include "kernels/parallel/task_fence.h"
 
 namespace icloth {
 

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 #if defined(__CUDACC__)
-#include "kernels/memory_cuda.h"
+#include "kernels/parallel/memory_cuda.h"
 #else
-#include "kernels/memory_cpu.h"
+#include "kernels/parallel/memory_cpu.h"
 #endif
 
 // Bounds checks cost some 10 % of a step, so they are asked for.

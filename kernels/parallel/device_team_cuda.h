@@ -1,5 +1,5 @@
-// A team of all threads of a CUDA device. Included by kernels/parallel_cuda.h; what it offers is
-// said in kernels/parallel.h.
+// A team of all threads of a CUDA device. Included by kernels/parallel/parallel_cuda.h; what it
+// offers is said in kernels/parallel/parallel.h.
 #pragma once
 
 #include <cooperative_groups.h>

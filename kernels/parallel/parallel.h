@@ -1,17 +1,18 @@
 // The primitives: the only place where the stages meet a backend (oneTBB or CUDA).
 //
-// Each takes a readable name first, which becomes a row of the profile (kernels/profile.h).
-// Results do not depend on the number of threads, and equal input gives equal bits on one device.
-// Functors are copied to the device by value; they hold views and numbers, and are small.
-// Primitives are called from one host thread at a time a simulator, never from inside a kernel.
+// Each takes a readable name first, which becomes a row of the profile
+// (kernels/parallel/profile.h). Results do not depend on the number of threads, and equal input
+// gives equal bits on one device. Functors are copied to the device by value; they hold views and
+// numbers, and are small. Primitives are called from one host thread at a time a simulator, never
+// from inside a kernel.
 #pragma once
 
 #include <cstdint>
 
-#include "kernels/array.h"
-#include "kernels/platform.h"
-#include "kernels/profile.h"
-#include "kernels/team.h"
+#include "kernels/parallel/array.h"
+#include "kernels/parallel/platform.h"
+#include "kernels/parallel/profile.h"
+#include "kernels/parallel/team.h"
 
 namespace icloth::ICLOTH_BUILD {
 
@@ -67,21 +68,22 @@ template <class T, class F>
 Index collect(const char* name, Index n, const F& f, Array<T>& out);
 
 /// Calls f(team, t) for t = 0 … teams − 1: a team is one task on the CPU, a thread block on CUDA.
-/// f runs on every thread of the team, which share work by the members of Team (kernels/team.h).
+/// f runs on every thread of the team, which share work by the members of Team
+/// (kernels/parallel/team.h).
 template <class F>
 void for_each_team(const char* name, Index teams, const F& f);
 
 /// Calls f(team) once with a DeviceTeam: every thread of the device works on one problem, in one
 /// kernel on CUDA. `n`: the largest number of elements that f will give to the team's members.
-/// They are those of Team (kernels/team.h), and each is a barrier for the whole device; sums have
-/// an order that depends on their length alone, but differs between CPU and CUDA.
+/// They are those of Team (kernels/parallel/team.h), and each is a barrier for the whole device;
+/// sums have an order that depends on their length alone, but differs between CPU and CUDA.
 template <class F>
 void with_device_team(const char* name, Index n, const F& f);
 
 }  // namespace icloth::ICLOTH_BUILD
 
 #if defined(__CUDACC__)
-#include "kernels/parallel_cuda.h"
+#include "kernels/parallel/parallel_cuda.h"
 #else
-#include "kernels/parallel_cpu.h"
+#include "kernels/parallel/parallel_cpu.h"
 #endif

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth::ICLOTH_BUILD::detail {
 

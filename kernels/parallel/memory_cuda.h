@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "kernels/cuda_check.h"
+#include "kernels/parallel/cuda_check.h"
 
 namespace icloth::ICLOTH_BUILD::memory {
 

@@ -4,11 +4,11 @@
 #include <array>
 #include <string>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 #if defined(__CUDACC__)
-#include "kernels/cuda_check.h"
-#include "kernels/device_problem.h"
+#include "kernels/parallel/cuda_check.h"
+#include "kernels/parallel/device_problem.h"
 #endif
 
 namespace icloth::ICLOTH_BUILD {

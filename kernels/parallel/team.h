@@ -7,8 +7,8 @@
 
 #include <type_traits>
 
-#include "kernels/array.h"
-#include "kernels/platform.h"
+#include "kernels/parallel/array.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth::ICLOTH_BUILD {
 

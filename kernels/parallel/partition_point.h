@@ -1,7 +1,7 @@
 // Bisection.
 #pragma once
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <new>
 
-#include "kernels/platform.h"
+#include "kernels/parallel/platform.h"
 
 namespace icloth::ICLOTH_BUILD::memory {
 
