@@ -1,13 +1,13 @@
 // The coplanarity cubic: error bounds against a more precise evaluation, the bound of its first
 // zero, and the arithmetic underneath.
-#include "kernels/ccd_cubic.h"
+#include "kernels/ccd/ccd_cubic.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "kernels/ccd_first_zero.h"
+#include "kernels/ccd/ccd_first_zero.h"
 
 namespace icloth {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 
 namespace icloth {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 #include "sim/collision/ccd.h"
 #include "tests/stage_support.h"
 

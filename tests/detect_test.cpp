@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 #include "sim/files/mesh_io.h"
 #include "sim/scene/shapes.h"
 

@@ -1,6 +1,6 @@
 // Hand-made cases of the elementary CCD, each tried at several scales and places, and random ones
 // against constructions with a known contact and against a slow oracle.
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 
 #include <gtest/gtest.h>
 

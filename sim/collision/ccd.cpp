@@ -1,6 +1,6 @@
 #include "sim/collision/ccd.h"
 
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 #include "kernels/parallel/parallel.h"
 
 namespace icloth::ICLOTH_BUILD {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/elementary_ccd.h"
+#include "kernels/ccd/elementary_ccd.h"
 
 namespace icloth::oracle {
 

@@ -15,7 +15,7 @@
 // T is float (in the filter), double or DoubleDouble.
 #pragma once
 
-#include "kernels/double_double.h"
+#include "kernels/ccd/double_double.h"
 #include "kernels/vec.h"
 
 namespace icloth {

@@ -16,8 +16,8 @@
 // moved on in double-double arithmetic by the same functions.
 #pragma once
 
-#include "kernels/ccd_closest.h"
-#include "kernels/ccd_first_zero.h"
+#include "kernels/ccd/ccd_closest.h"
+#include "kernels/ccd/ccd_first_zero.h"
 
 namespace icloth {
 

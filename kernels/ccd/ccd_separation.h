@@ -8,7 +8,7 @@
 // missed contact.
 #pragma once
 
-#include "kernels/ccd_cubic.h"
+#include "kernels/ccd/ccd_cubic.h"
 
 namespace icloth {
 

@@ -5,7 +5,7 @@
 // the closest points: that one loses its direction to rounding when the gap is small.
 #pragma once
 
-#include "kernels/ccd_separation.h"
+#include "kernels/ccd/ccd_separation.h"
 #include "kernels/distance.h"
 
 namespace icloth {

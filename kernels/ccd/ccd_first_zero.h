@@ -5,7 +5,7 @@
 // a badly converging step costs time.
 #pragma once
 
-#include "kernels/ccd_cubic.h"
+#include "kernels/ccd/ccd_cubic.h"
 
 namespace icloth {
 
