@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "kernels/parallel/parallel.h"
-#include "kernels/zone_groups.h"
+#include "kernels/zones/zone_groups.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {

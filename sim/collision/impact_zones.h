@@ -2,7 +2,7 @@
 // (paper Section 4). Constraints are kept over the rounds of a step.
 #pragma once
 
-#include "kernels/zone_solve.h"
+#include "kernels/zones/zone_solve.h"
 #include "sim/collision/ccd.h"
 #include "sim/linear/incidence.h"
 #include "sim/state/state.h"

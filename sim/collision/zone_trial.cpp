@@ -4,7 +4,7 @@
 #include <chrono>
 #include <random>
 
-#include "kernels/zone_solve.h"
+#include "kernels/zones/zone_solve.h"
 #include "sim/linear/incidence.h"
 
 namespace icloth::ICLOTH_BUILD {

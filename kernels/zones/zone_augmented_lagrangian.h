@@ -10,7 +10,7 @@
 // a step of 10⁻¹² m; and a free zone is then shifted so that it keeps its momentum.
 #pragma once
 
-#include "kernels/zone_problem.h"
+#include "kernels/zones/zone_problem.h"
 
 namespace icloth::ICLOTH_BUILD {
 

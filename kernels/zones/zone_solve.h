@@ -1,9 +1,9 @@
 // Solves impact zones: one team a zone, by the solver that was chosen.
 #pragma once
 
-#include "kernels/zone_augmented_lagrangian.h"
-#include "kernels/zone_dual.h"
-#include "kernels/zone_linear.h"
+#include "kernels/zones/zone_augmented_lagrangian.h"
+#include "kernels/zones/zone_dual.h"
+#include "kernels/zones/zone_linear.h"
 
 namespace icloth::ICLOTH_BUILD {
 

@@ -7,7 +7,7 @@
 // makes layers stick. The system is solved by conjugate gradients.
 #pragma once
 
-#include "kernels/zone_problem.h"
+#include "kernels/zones/zone_problem.h"
 
 namespace icloth::ICLOTH_BUILD {
 

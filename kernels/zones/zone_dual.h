@@ -8,7 +8,7 @@
 // iterate keeps the momentum of the zone by construction.
 #pragma once
 
-#include "kernels/zone_problem.h"
+#include "kernels/zones/zone_problem.h"
 
 namespace icloth::ICLOTH_BUILD {
 

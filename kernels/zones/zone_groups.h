@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/impact.h"
-#include "kernels/zone_problem.h"
+#include "kernels/zones/zone_problem.h"
 
 namespace icloth::ICLOTH_BUILD {
 
