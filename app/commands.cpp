@@ -7,7 +7,6 @@
 #include <functional>
 #include <new>
 
-#include "app/bindings.h"
 #include "app/machine.h"
 #include "app/options.h"
 #include "app/verbs/bench.h"
@@ -19,6 +18,7 @@
 #include "app/verbs/replay.h"
 #include "app/verbs/run.h"
 #include "app/verbs/view.h"
+#include "app/window/bindings.h"
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"

@@ -1,5 +1,5 @@
 // The one table of keys and mouse, and the page made from it.
-#include "app/bindings.h"
+#include "app/window/bindings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Dragging without a window: what the hand does becomes the right events.
-#include "app/drag.h"
+#include "app/window/drag.h"
 
 #include <gtest/gtest.h>
 

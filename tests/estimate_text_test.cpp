@@ -1,7 +1,7 @@
 // The errors of a step as the panels write them.
 #include <gtest/gtest.h>
 
-#include "app/estimates.h"
+#include "app/window/estimates.h"
 
 namespace icloth {
 namespace {

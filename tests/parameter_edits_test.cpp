@@ -1,5 +1,5 @@
 // Edits of parameters can be undone, and reach the solver in order.
-#include "app/parameter_edits.h"
+#include "app/window/parameter_edits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // What the newest steps say about their own errors.
-#include "app/estimates.h"
 #include "app/panels/hover.h"
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/estimates.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

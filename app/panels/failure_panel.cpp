@@ -1,6 +1,6 @@
 // A failure is explained in a sentence, shown on the mesh, and comes with what can be done.
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

@@ -1,8 +1,8 @@
 // F1: the table of keys.
 
-#include "app/bindings.h"
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/bindings.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "app/drag.h"
 #include "app/panels/stage_history.h"
-#include "app/parameter_edits.h"
 #include "app/session.h"
+#include "app/window/drag.h"
+#include "app/window/parameter_edits.h"
 #include "render/renderer.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/world.h"

@@ -3,7 +3,7 @@
 
 #include "app/panels/hover.h"
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/theme.h"
 #include "sim/scene/presets.h"
 
 namespace icloth {

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

@@ -1,9 +1,9 @@
 // The two lines along the bottom: what can be done now, and how it goes.
 #include <cstdio>
 
-#include "app/bindings.h"
 #include "app/panels/panel.h"
-#include "app/theme.h"
+#include "app/window/bindings.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

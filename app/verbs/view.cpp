@@ -1,6 +1,6 @@
 #include "app/verbs/view.h"
 
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 #include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
 

@@ -1,7 +1,7 @@
 // icloth view: the interactive window.
 #pragma once
 
-#include "app/view_options.h"
+#include "app/window/view_options.h"
 
 namespace icloth {
 

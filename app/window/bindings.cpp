@@ -1,4 +1,4 @@
-#include "app/bindings.h"
+#include "app/window/bindings.h"
 
 namespace icloth {
 

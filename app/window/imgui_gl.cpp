@@ -1,11 +1,11 @@
-#include "app/imgui_gl.h"
+#include "app/window/imgui_gl.h"
 
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
 #include <cstddef>
 
-#include "app/theme.h"
+#include "app/window/theme.h"
 
 namespace icloth {
 

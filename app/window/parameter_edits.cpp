@@ -1,4 +1,4 @@
-#include "app/parameter_edits.h"
+#include "app/window/parameter_edits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/window.h"
+#include "app/window/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/bindings.h"
+#include "app/window/bindings.h"
 #include "sim/files/error.h"
 
 namespace icloth {

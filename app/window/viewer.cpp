@@ -1,11 +1,11 @@
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
 
-#include "app/theme.h"
+#include "app/window/theme.h"
 #include "render/ui_painter.h"
 #include "sim/files/error.h"
 

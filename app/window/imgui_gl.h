@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/window.h"
+#include "app/window/window.h"
 #include "render/ui_painter.h"
 
 namespace icloth {

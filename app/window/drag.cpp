@@ -1,4 +1,4 @@
-#include "app/drag.h"
+#include "app/window/drag.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/estimates.h"
+#include "app/window/estimates.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/test_status.h"
+#include "app/window/test_status.h"
 
 #include <cstdio>
 #include <cstdlib>

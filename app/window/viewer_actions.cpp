@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "app/camera_json.h"
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 namespace icloth {
 

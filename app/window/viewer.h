@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "app/bindings.h"
-#include "app/drag.h"
-#include "app/imgui_gl.h"
 #include "app/panels/panel.h"
-#include "app/parameter_edits.h"
 #include "app/session.h"
-#include "app/test_status.h"
-#include "app/view_options.h"
-#include "app/window.h"
+#include "app/window/bindings.h"
+#include "app/window/drag.h"
+#include "app/window/imgui_gl.h"
+#include "app/window/parameter_edits.h"
+#include "app/window/test_status.h"
+#include "app/window/view_options.h"
+#include "app/window/window.h"
 #include "render/camera.h"
 #include "render/gl_targets.h"
 #include "render/pick.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 namespace icloth {
 
