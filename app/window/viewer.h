@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "app/panels/panel.h"
 #include "app/session.h"
 #include "app/window/bindings.h"
 #include "app/window/drag.h"
 #include "app/window/imgui_gl.h"
+#include "app/window/panels/panel.h"
 #include "app/window/parameter_edits.h"
 #include "app/window/test_status.h"
 #include "app/window/view_options.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/panels/panel.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

@@ -1,8 +1,8 @@
 // The two lines along the bottom: what can be done now, and how it goes.
 #include <cstdio>
 
-#include "app/panels/panel.h"
 #include "app/window/bindings.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

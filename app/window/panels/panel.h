@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "app/panels/stage_history.h"
 #include "app/session.h"
 #include "app/window/drag.h"
+#include "app/window/panels/stage_history.h"
 #include "app/window/parameter_edits.h"
 #include "render/renderer.h"
 #include "sim/scene/intersections.h"

@@ -1,7 +1,7 @@
 // What the newest steps say about their own errors.
-#include "app/panels/hover.h"
-#include "app/panels/panel.h"
 #include "app/window/estimates.h"
+#include "app/window/panels/hover.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

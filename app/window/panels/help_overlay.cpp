@@ -1,7 +1,7 @@
 // F1: the table of keys.
 
-#include "app/panels/panel.h"
 #include "app/window/bindings.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

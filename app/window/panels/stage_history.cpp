@@ -1,4 +1,4 @@
-#include "app/panels/stage_history.h"
+#include "app/window/panels/stage_history.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // The column on the left, its transport buttons and its tabs.
 #include <cstdio>
 
-#include "app/panels/panel.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

@@ -1,5 +1,5 @@
 // A failure is explained in a sentence, shown on the mesh, and comes with what can be done.
-#include "app/panels/panel.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
 namespace icloth {

@@ -1,8 +1,8 @@
 // Sliders made from the table of parameters: unit, range, scale and tooltips come from there.
 #include <cstdio>
 
-#include "app/panels/hover.h"
-#include "app/panels/panel.h"
+#include "app/window/panels/hover.h"
+#include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 #include "sim/scene/presets.h"
 
