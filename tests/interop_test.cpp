@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "app/session.h"
+#include "app/session/session.h"
 #include "render/cuda_vertices.h"
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"

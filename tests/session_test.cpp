@@ -1,5 +1,5 @@
 // The session: nothing waits for the solver, and what was done can be done again.
-#include "app/session.h"
+#include "app/session/session.h"
 
 #include <gtest/gtest.h>
 

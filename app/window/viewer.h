@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session.h"
+#include "app/session/session.h"
 #include "app/window/bindings.h"
 #include "app/window/drag.h"
 #include "app/window/imgui_gl.h"

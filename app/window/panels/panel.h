@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session.h"
+#include "app/session/session.h"
 #include "app/window/drag.h"
 #include "app/window/panels/stage_history.h"
 #include "app/window/parameter_edits.h"

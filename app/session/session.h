@@ -15,8 +15,8 @@
 #include <variant>
 #include <vector>
 
-#include "app/history.h"
-#include "app/triple_buffer.h"
+#include "app/session/history.h"
+#include "app/session/triple_buffer.h"
 #include "sim/scene/input.h"
 #include "sim/simulator.h"
 
