@@ -7,8 +7,8 @@
 #include <functional>
 #include <new>
 
-#include "app/machine.h"
-#include "app/options.h"
+#include "app/common/machine.h"
+#include "app/common/options.h"
 #include "app/verbs/bench.h"
 #include "app/verbs/ccd.h"
 #include "app/verbs/check.h"

@@ -1,5 +1,5 @@
 // Cameras go through the clipboard unchanged, and other text is refused.
-#include "app/camera_json.h"
+#include "app/common/camera_json.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/element_names.h"
-#include "app/run_statistics.h"
+#include "app/common/element_names.h"
+#include "app/common/run_statistics.h"
 #include "sim/files/error.h"
 
 using namespace icloth;

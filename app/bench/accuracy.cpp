@@ -7,7 +7,7 @@
 #include "app/bench/parts.h"
 #include "app/bench/suite.h"
 #include "app/bench/trial.h"
-#include "app/progress.h"
+#include "app/common/progress.h"
 #include "app/report/report.h"
 #include "sim/scene/presets.h"
 

@@ -1,7 +1,7 @@
 #include "app/bench/frames.h"
 
-#include "app/headless.h"
-#include "app/progress.h"
+#include "app/common/headless.h"
+#include "app/common/progress.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

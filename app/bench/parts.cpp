@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/headless.h"
+#include "app/common/headless.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

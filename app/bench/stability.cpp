@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "app/bench/suite.h"
-#include "app/machine.h"
+#include "app/common/machine.h"
 #include "app/stability/case_run.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/machine.h"
-#include "app/options.h"
+#include "app/common/machine.h"
+#include "app/common/options.h"
 #include "kernels/parallel/device_problem.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"

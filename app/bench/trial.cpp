@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/headless.h"
+#include "app/common/headless.h"
 #include "app/validation/shadow.h"
 #include "app/validation/strips.h"
 #include "sim/files/error.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "app/element_names.h"
+#include "app/common/element_names.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/camera_json.h"
-#include "app/headless.h"
-#include "app/options.h"
+#include "app/common/camera_json.h"
+#include "app/common/headless.h"
+#include "app/common/options.h"
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"

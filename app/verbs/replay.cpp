@@ -3,8 +3,8 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "app/headless.h"
-#include "app/options.h"
+#include "app/common/headless.h"
+#include "app/common/options.h"
 #include "sim/scene/scene_io.h"
 
 namespace icloth {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/headless.h"
+#include "app/common/headless.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"

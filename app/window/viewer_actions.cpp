@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/camera_json.h"
+#include "app/common/camera_json.h"
 #include "app/window/viewer.h"
 
 namespace icloth {

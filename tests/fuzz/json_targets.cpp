@@ -1,7 +1,7 @@
 // Materials, recordings and cameras.
 #include <cmath>
 
-#include "app/camera_json.h"
+#include "app/common/camera_json.h"
 #include "sim/files/file_io.h"
 #include "sim/scene/input.h"
 #include "sim/scene/material_io.h"

@@ -1,4 +1,4 @@
-#include "app/element_names.h"
+#include "app/common/element_names.h"
 
 #include <algorithm>
 #include <cstdio>

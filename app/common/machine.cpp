@@ -1,4 +1,4 @@
-#include "app/machine.h"
+#include "app/common/machine.h"
 
 #include <icloth_commit.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "app/camera_json.h"
+#include "app/common/camera_json.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

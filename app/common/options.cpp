@@ -1,4 +1,4 @@
-#include "app/options.h"
+#include "app/common/options.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/run_statistics.h"
+#include "app/common/run_statistics.h"
 
 #include <algorithm>
 #include <cinttypes>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "app/machine.h"
+#include "app/common/machine.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 

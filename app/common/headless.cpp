@@ -1,11 +1,11 @@
-#include "app/headless.h"
+#include "app/common/headless.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "app/element_names.h"
-#include "app/machine.h"
-#include "app/progress.h"
+#include "app/common/element_names.h"
+#include "app/common/machine.h"
+#include "app/common/progress.h"
 #include "sim/scene/intersections.h"
 
 namespace icloth {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "app/run_statistics.h"
+#include "app/common/run_statistics.h"
 #include "sim/scene/input.h"
 #include "sim/simulator.h"
 
