@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/suite_case.h"
+#include "app/suites/suite_case.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/scene/intersections.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "app/suite_case.h"
+#include "app/suites/suite_case.h"
 
 namespace icloth::validation {
 
