@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "app/bench/trial.h"
+#include "app/suites/bench/trial.h"
 #include "app/validation/shadow.h"
 #include "sim/scene/presets.h"
 

@@ -4,14 +4,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/bench/accuracy.h"
-#include "app/bench/paper.h"
-#include "app/bench/solver.h"
-#include "app/bench/stability.h"
-#include "app/bench/suite.h"
-#include "app/bench/validation.h"
 #include "app/common/headless.h"
 #include "app/common/machine.h"
+#include "app/suites/bench/accuracy.h"
+#include "app/suites/bench/paper.h"
+#include "app/suites/bench/solver.h"
+#include "app/suites/bench/stability.h"
+#include "app/suites/bench/suite.h"
+#include "app/suites/bench/validation.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"

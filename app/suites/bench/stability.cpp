@@ -1,10 +1,10 @@
-#include "app/bench/stability.h"
+#include "app/suites/bench/stability.h"
 
 #include <cstdio>
 
-#include "app/bench/suite.h"
 #include "app/common/machine.h"
 #include "app/stability/case_run.h"
+#include "app/suites/bench/suite.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 

@@ -1,14 +1,14 @@
-#include "app/bench/accuracy.h"
+#include "app/suites/bench/accuracy.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "app/bench/parts.h"
-#include "app/bench/suite.h"
-#include "app/bench/trial.h"
 #include "app/common/progress.h"
 #include "app/report/report.h"
+#include "app/suites/bench/parts.h"
+#include "app/suites/bench/suite.h"
+#include "app/suites/bench/trial.h"
 #include "sim/scene/presets.h"
 
 namespace icloth {

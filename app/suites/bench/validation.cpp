@@ -1,8 +1,8 @@
-#include "app/bench/validation.h"
+#include "app/suites/bench/validation.h"
 
 #include <cstdio>
 
-#include "app/bench/suite.h"
+#include "app/suites/bench/suite.h"
 #include "app/validation/case_run.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"

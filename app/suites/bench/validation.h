@@ -1,7 +1,7 @@
 // icloth bench validation: mechanics against references that do not come from the simulation.
 #pragma once
 
-#include "app/bench/bench_options.h"
+#include "app/suites/bench/bench_options.h"
 
 namespace icloth {
 

@@ -1,4 +1,4 @@
-#include "app/bench/parts.h"
+#include "app/suites/bench/parts.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "app/bench/suite.h"
+#include "app/suites/bench/suite.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,10 +1,10 @@
-#include "app/bench/paper.h"
+#include "app/suites/bench/paper.h"
 
 #include <cstdio>
 
-#include "app/bench/frames.h"
-#include "app/bench/suite.h"
 #include "app/report/report.h"
+#include "app/suites/bench/frames.h"
+#include "app/suites/bench/suite.h"
 #include "sim/collision/zone_trial.h"
 
 namespace icloth {

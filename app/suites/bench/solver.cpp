@@ -1,11 +1,11 @@
-#include "app/bench/solver.h"
+#include "app/suites/bench/solver.h"
 
 #include <algorithm>
 #include <array>
 
-#include "app/bench/frames.h"
-#include "app/bench/suite.h"
 #include "app/report/report.h"
+#include "app/suites/bench/frames.h"
+#include "app/suites/bench/suite.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/bench/bench_options.h"
 #include "app/report/report.h"
+#include "app/suites/bench/bench_options.h"
 #include "sim/files/error.h"
 #include "sim/simulator.h"
 

@@ -1,7 +1,7 @@
 // icloth bench paper: the comparisons of Tang et al. 2018, Section 5, with this program's modes.
 #pragma once
 
-#include "app/bench/bench_options.h"
+#include "app/suites/bench/bench_options.h"
 
 namespace icloth {
 

@@ -1,7 +1,7 @@
 // icloth bench solver: the preconditioners of the implicit step compared on the same states.
 #pragma once
 
-#include "app/bench/bench_options.h"
+#include "app/suites/bench/bench_options.h"
 
 namespace icloth {
 

@@ -1,4 +1,4 @@
-#include "app/bench/trial.h"
+#include "app/suites/bench/trial.h"
 
 #include <algorithm>
 #include <cmath>

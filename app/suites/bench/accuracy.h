@@ -1,7 +1,7 @@
 // Speed against error (`icloth bench accuracy`): what each setting costs and what it breaks.
 #pragma once
 
-#include "app/bench/bench_options.h"
+#include "app/suites/bench/bench_options.h"
 
 namespace icloth {
 

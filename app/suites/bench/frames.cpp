@@ -1,4 +1,4 @@
-#include "app/bench/frames.h"
+#include "app/suites/bench/frames.h"
 
 #include "app/common/headless.h"
 #include "app/common/progress.h"

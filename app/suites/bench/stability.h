@@ -1,7 +1,7 @@
 // icloth bench stability: the hard cases, one row each.
 #pragma once
 
-#include "app/bench/bench_options.h"
+#include "app/suites/bench/bench_options.h"
 
 namespace icloth {
 
