@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "app/stability/case_run.h"
+#include "app/suites/stability/case_run.h"
 
 namespace icloth::stability {
 namespace {

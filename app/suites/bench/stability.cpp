@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "app/common/machine.h"
-#include "app/stability/case_run.h"
 #include "app/suites/bench/suite.h"
+#include "app/suites/stability/case_run.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 

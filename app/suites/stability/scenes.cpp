@@ -1,4 +1,4 @@
-#include "app/stability/scenes.h"
+#include "app/suites/stability/scenes.h"
 
 #include <algorithm>
 #include <cmath>

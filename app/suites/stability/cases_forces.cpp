@@ -3,9 +3,9 @@
 #include <cmath>
 #include <random>
 
-#include "app/stability/case_run.h"
-#include "app/stability/cases.h"
-#include "app/stability/scenes.h"
+#include "app/suites/stability/case_run.h"
+#include "app/suites/stability/cases.h"
+#include "app/suites/stability/scenes.h"
 
 namespace icloth::stability {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/stability/case_run.h"
+#include "app/suites/stability/case_run.h"
 
 #include <algorithm>
 #include <cctype>

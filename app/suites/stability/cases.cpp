@@ -1,6 +1,6 @@
-#include "app/stability/cases.h"
+#include "app/suites/stability/cases.h"
 
-#include "app/stability/case_run.h"
+#include "app/suites/stability/case_run.h"
 
 namespace icloth::stability {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/stability/case_run.h"
-#include "app/stability/cases.h"
-#include "app/stability/scenes.h"
+#include "app/suites/stability/case_run.h"
+#include "app/suites/stability/cases.h"
+#include "app/suites/stability/scenes.h"
 #include "sim/scene/rotation.h"
 
 namespace icloth::stability {

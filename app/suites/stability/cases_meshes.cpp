@@ -1,9 +1,9 @@
 // What a mesh file can hold that no weaver would make.
 #include <cmath>
 
-#include "app/stability/case_run.h"
-#include "app/stability/cases.h"
-#include "app/stability/scenes.h"
+#include "app/suites/stability/case_run.h"
+#include "app/suites/stability/cases.h"
+#include "app/suites/stability/scenes.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/scene/intersections.h"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "app/stability/case_run.h"
-#include "app/stability/cases.h"
-#include "app/stability/scenes.h"
+#include "app/suites/stability/case_run.h"
+#include "app/suites/stability/cases.h"
+#include "app/suites/stability/scenes.h"
 #include "sim/files/error.h"
 #include "sim/scene/intersections.h"
 
