@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "app/suites/bench/trial.h"
-#include "app/validation/shadow.h"
+#include "app/suites/validation/shadow.h"
 #include "sim/scene/presets.h"
 
 namespace icloth {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/validation/case_run.h"
-#include "app/validation/references.h"
-#include "app/validation/strips.h"
+#include "app/suites/validation/case_run.h"
+#include "app/suites/validation/references.h"
+#include "app/suites/validation/strips.h"
 
 namespace icloth::validation {
 namespace {

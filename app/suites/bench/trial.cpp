@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "app/common/headless.h"
-#include "app/validation/shadow.h"
-#include "app/validation/strips.h"
+#include "app/suites/validation/shadow.h"
+#include "app/suites/validation/strips.h"
 #include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "app/suites/bench/suite.h"
-#include "app/validation/case_run.h"
+#include "app/suites/validation/case_run.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 

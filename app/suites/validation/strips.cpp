@@ -1,4 +1,4 @@
-#include "app/validation/strips.h"
+#include "app/suites/validation/strips.h"
 
 #include <cmath>
 #include <numbers>

@@ -3,10 +3,10 @@
 #include <complex>
 #include <numbers>
 
-#include "app/validation/case_run.h"
-#include "app/validation/cases.h"
-#include "app/validation/references.h"
-#include "app/validation/strips.h"
+#include "app/suites/validation/case_run.h"
+#include "app/suites/validation/cases.h"
+#include "app/suites/validation/references.h"
+#include "app/suites/validation/strips.h"
 
 namespace icloth::validation {
 namespace {

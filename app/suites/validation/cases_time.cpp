@@ -4,9 +4,9 @@
 #include <numbers>
 #include <random>
 
-#include "app/validation/case_run.h"
-#include "app/validation/cases.h"
-#include "app/validation/strips.h"
+#include "app/suites/validation/case_run.h"
+#include "app/suites/validation/cases.h"
+#include "app/suites/validation/strips.h"
 
 namespace icloth::validation {
 namespace {

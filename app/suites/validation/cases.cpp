@@ -1,6 +1,6 @@
-#include "app/validation/cases.h"
+#include "app/suites/validation/cases.h"
 
-#include "app/validation/case_run.h"
+#include "app/suites/validation/case_run.h"
 
 namespace icloth::validation {
 namespace {

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "app/validation/case_run.h"
-#include "app/validation/cases.h"
-#include "app/validation/strips.h"
+#include "app/suites/validation/case_run.h"
+#include "app/suites/validation/cases.h"
+#include "app/suites/validation/strips.h"
 
 namespace icloth::validation {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/validation/shadow.h"
+#include "app/suites/validation/shadow.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/validation/case_run.h"
+#include "app/suites/validation/case_run.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/validation/references.h"
+#include "app/suites/validation/references.h"
 
 #include <algorithm>
 #include <cmath>
