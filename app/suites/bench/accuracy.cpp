@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "app/common/progress.h"
-#include "app/report/report.h"
 #include "app/suites/bench/parts.h"
 #include "app/suites/bench/suite.h"
 #include "app/suites/bench/trial.h"
+#include "app/suites/report/report.h"
 #include "sim/scene/presets.h"
 
 namespace icloth {

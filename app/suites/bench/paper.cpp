@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
-#include "app/report/report.h"
 #include "app/suites/bench/frames.h"
 #include "app/suites/bench/suite.h"
+#include "app/suites/report/report.h"
 #include "sim/collision/zone_trial.h"
 
 namespace icloth {

@@ -1,7 +1,7 @@
 // What each part of a scene costs: one scene that gets them in turn.
 #pragma once
 
-#include "app/report/report.h"
+#include "app/suites/report/report.h"
 #include "sim/simulator.h"
 
 namespace icloth {

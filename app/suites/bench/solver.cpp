@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "app/report/report.h"
 #include "app/suites/bench/frames.h"
 #include "app/suites/bench/suite.h"
+#include "app/suites/report/report.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/report.h"
 #include "app/suites/bench/bench_options.h"
+#include "app/suites/report/report.h"
 #include "sim/files/error.h"
 #include "sim/simulator.h"
 

@@ -1,4 +1,4 @@
-#include "app/report/report.h"
+#include "app/suites/report/report.h"
 
 #include <cstdio>
 

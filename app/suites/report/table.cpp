@@ -1,4 +1,4 @@
-#include "app/report/table.h"
+#include "app/suites/report/table.h"
 
 #include <algorithm>
 #include <cassert>

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/report/plot.h"
-#include "app/report/table.h"
+#include "app/suites/report/plot.h"
+#include "app/suites/report/table.h"
 
 namespace icloth {
 

@@ -1,10 +1,10 @@
-#include "app/report/plot.h"
+#include "app/suites/report/plot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "app/report/table.h"
+#include "app/suites/report/table.h"
 
 namespace icloth {
 namespace {
