@@ -1,5 +1,5 @@
 // Reading files of collision queries, and the verb that tests them.
-#include "app/verbs/query_file.h"
+#include "app/cli/commands/query_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/verbs/ccd.h"
+#include "app/cli/commands/ccd.h"
 #include "sim/files/error.h"
 
 namespace icloth {

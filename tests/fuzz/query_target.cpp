@@ -1,7 +1,7 @@
 // Query files of `icloth ccd`, plain and compressed, and the test of what they hold.
 #include <cmath>
 
-#include "app/verbs/query_file.h"
+#include "app/cli/commands/query_file.h"
 #include "tests/fuzz/support.h"
 #include "tests/fuzz/targets.h"
 

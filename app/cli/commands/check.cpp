@@ -1,4 +1,4 @@
-#include "app/verbs/check.h"
+#include "app/cli/commands/check.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "app/verbs/view.h"
+#include "app/cli/commands/view.h"
 
 #include "app/window/viewer.h"
 #include "sim/files/error.h"

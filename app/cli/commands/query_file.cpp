@@ -1,4 +1,4 @@
-#include "app/verbs/query_file.h"
+#include "app/cli/commands/query_file.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/verbs/render.h"
+#include "app/cli/commands/render.h"
 
 #include <algorithm>
 #include <charconv>

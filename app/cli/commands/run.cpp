@@ -1,4 +1,4 @@
-#include "app/verbs/run.h"
+#include "app/cli/commands/run.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "app/verbs/ccd.h"
+#include "app/cli/commands/ccd.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "app/verbs/query_file.h"
+#include "app/cli/commands/query_file.h"
 #include "sim/files/error.h"
 
 namespace icloth {

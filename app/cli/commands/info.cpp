@@ -1,4 +1,4 @@
-#include "app/verbs/info.h"
+#include "app/cli/commands/info.h"
 
 #include <cstdio>
 #include <stdexcept>

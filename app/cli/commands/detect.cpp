@@ -1,4 +1,4 @@
-#include "app/verbs/detect.h"
+#include "app/cli/commands/detect.h"
 
 #include <chrono>
 #include <cstdio>

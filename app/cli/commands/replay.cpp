@@ -1,4 +1,4 @@
-#include "app/verbs/replay.h"
+#include "app/cli/commands/replay.h"
 
 #include <cinttypes>
 #include <cstdio>

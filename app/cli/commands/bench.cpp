@@ -1,4 +1,4 @@
-#include "app/verbs/bench.h"
+#include "app/cli/commands/bench.h"
 
 #include <cinttypes>
 #include <cstdio>
