@@ -19,8 +19,8 @@ namespace icloth {
 /// agree and all is exact. On other meshes neither has both properties: cloth finds a way to bend
 /// with less energy past the first, which is too soft by up to a quarter, and the second is too
 /// stiff by up to a half. Half way between them, (½ M + ½ W'⁻¹)⁻¹, the errors cancel to first
-/// order: with the default 0.91 to 1.04 of the modulus on all meshes of tests/bending_test.cpp,
-/// where single hinges have 0.84 to 3.
+/// order: with the default 0.91 to 1.04 of the modulus on all meshes of
+/// tests/sim/mechanics/bending_test.cpp, where single hinges have 0.84 to 3.
 ///
 /// On a border, where an angle is not known, W gives the smallest curvature (√(H:H)) that fits the
 /// others, as no moment acts across a free edge. Where six vertices lie near one conic M is nearly

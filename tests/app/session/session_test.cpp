@@ -1,0 +1,346 @@
+// The session: nothing waits for the solver, and what was done can be done again.
+#include "app/session/session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "tests/support/fake_simulator.h"
+
+namespace icloth {
+namespace {
+
+using testing::FakeOptions;
+using testing::FakeSimulator;
+using Clock = std::chrono::steady_clock;
+
+/// Looks at the session as the window does until the condition holds; false after 5 s.
+bool wait_until(Session& session, const std::function<bool(const PublishedState&)>& condition) {
+  const auto end = Clock::now() + std::chrono::seconds(5);
+  while (Clock::now() < end) {
+    session.take();
+    if (condition(session.state())) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+bool wait_for_step(Session& session, std::int64_t step) {
+  return wait_until(session, [=](const PublishedState& s) { return s.step >= step; });
+}
+
+/// Runs single steps and waits for each.
+void step(Session& session, int count = 1) {
+  for (int k = 0; k < count; ++k) {
+    const std::int64_t next = session.state().step + 1;
+    session.step_once();
+    ASSERT_TRUE(wait_for_step(session, next));
+  }
+}
+
+InputEvent event(InputEvent::Kind kind, int handle, Vec3d target) {
+  InputEvent e;
+  e.kind = kind;
+  e.handle = handle;
+  e.target = target;
+  return e;
+}
+
+/// What `icloth replay` does with a recording.
+std::uint64_t replay(const Recording& recording, FakeOptions options = {}) {
+  FakeSimulator simulator(options);
+  for (const Recording::Step& s : recording.steps) {
+    Parameters parameters = simulator.parameters();
+    for (const auto& [name, value] : s.parameters) {
+      set_parameter(parameters, *find_parameter(name), value);
+    }
+    simulator.set_parameters(parameters);
+    simulator.step(s.events);
+  }
+  return simulator.state_hash();
+}
+
+std::unique_ptr<Session> make(FakeOptions options = {}, SessionOptions session = {}) {
+  session.scene = "fake";
+  return std::make_unique<Session>(std::make_unique<FakeSimulator>(options), session);
+}
+
+TEST(session, publishes_the_start_state_at_once) {
+  const auto session = make();
+  EXPECT_EQ(session->state().positions.size(), 12u);
+  EXPECT_EQ(session->state().step, 0);
+  EXPECT_FALSE(session->state().playing);
+}
+
+TEST(session, single_steps_then_pauses) {
+  const auto session = make();
+  step(*session, 3);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  session->take();
+  EXPECT_EQ(session->state().step, 3);
+  EXPECT_FALSE(session->state().playing);
+  EXPECT_EQ(session->take_reports().size(), 3u);
+  EXPECT_TRUE(session->take_reports().empty());
+}
+
+TEST(session, never_waits_for_a_slow_step) {
+  const auto session = make({.step_ms = 250});
+  session->play();
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));  // the first step is under way
+  const auto begin = Clock::now();
+  for (int k = 0; k < 100; ++k) {
+    session->post(event(InputEvent::Kind::grab, 1, {1, 1, 1}));
+    session->set("gravity.y", -1);
+    session->take();
+    session->take_reports();
+  }
+  const std::chrono::duration<double> taken = Clock::now() - begin;
+  EXPECT_LT(taken.count(), 0.15);
+  EXPECT_TRUE(wait_for_step(*session, 2));
+}
+
+TEST(session, is_not_faster_than_the_clock) {
+  const auto session = make();
+  const auto begin = Clock::now();
+  session->play();
+  ASSERT_TRUE(wait_for_step(*session, 20));
+  const std::chrono::duration<double> taken = Clock::now() - begin;
+  EXPECT_GT(taken.count(), 18 * 0.01);
+  EXPECT_GT(session->state().steps_per_second, 1);
+  EXPECT_LT(session->state().steps_per_second, 115);
+
+  session->set_real_time(false);
+  const std::int64_t before = session->state().step;
+  ASSERT_TRUE(wait_for_step(*session, before + 2000));
+}
+
+TEST(session, replays_to_the_same_bits) {
+  const auto session = make();
+  step(*session, 2);
+  session->post(event(InputEvent::Kind::grab, 1, {0.5, 1.5, 0.1}));
+  step(*session, 2);
+  session->post(event(InputEvent::Kind::move, 1, {0.7, 1.5, 0.1}));
+  session->set("step.time_step", 0.005);
+  step(*session, 3);
+  session->post(event(InputEvent::Kind::release, 1, {}));
+  step(*session, 2);
+  session->stop();
+  const Recording recording = session->recording();
+  EXPECT_EQ(recording.steps.size(), 9u);
+  EXPECT_EQ(recording.build, "cpu32");
+  EXPECT_EQ(replay(recording), recording.final_hash);
+}
+
+TEST(session, only_the_newest_target_reaches_a_step) {
+  const auto session = make({.step_ms = 40});
+  session->post(event(InputEvent::Kind::grab, 1, {0, 0, 0}));
+  session->post(event(InputEvent::Kind::grab, 2, {0, 0, 0}));
+  for (int k = 0; k < 50; ++k) {
+    session->post(event(InputEvent::Kind::move, 1, {0.1 * k, 0, 0}));
+    session->post(event(InputEvent::Kind::move, 2, {0.2 * k, 0, 0}));
+  }
+  step(*session);
+  session->stop();
+  const Recording recording = session->recording();
+  const auto& events = recording.steps.at(0).events;
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_DOUBLE_EQ(events[0].target.x, 4.9);
+  EXPECT_DOUBLE_EQ(events[1].target.x, 9.8);
+}
+
+TEST(session, goes_back_and_on_from_there) {
+  const auto session = make();
+  step(*session, 2);
+  const auto positions = session->state().positions;
+  session->post(event(InputEvent::Kind::grab, 7, {1, 2, 3}));
+  step(*session, 4);
+  EXPECT_EQ(session->state().history, 6u);
+  session->step_back(4);
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
+  EXPECT_EQ(session->state().step, 2);
+  EXPECT_TRUE(session->state().held.empty());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    EXPECT_EQ(session->state().positions[v], positions[v]);
+  }
+  step(*session, 2);
+  session->stop();
+  EXPECT_EQ(session->recording().steps.size(), 4u);
+  EXPECT_EQ(replay(session->recording()), session->recording().final_hash);
+}
+
+TEST(session, holds_parked_handles_through_a_step_back) {
+  const auto session = make();
+  session->post(event(InputEvent::Kind::grab, 3, {1, 2, 3}));
+  step(*session, 3);
+  session->set("step.time_step", 0.02);
+  step(*session, 2);
+  session->step_back();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
+  ASSERT_EQ(session->state().held.size(), 1u);
+  EXPECT_EQ(session->state().held[0].handle, 3);
+  step(*session, 2);
+  EXPECT_EQ(session->state().handles.size(), 1u);
+  session->stop();
+  EXPECT_EQ(replay(session->recording()), session->recording().final_hash);
+}
+
+TEST(session, resets_and_keeps_the_parameters) {
+  const auto session = make();
+  session->set("gravity.y", -2);
+  step(*session, 3);
+  session->reset();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
+  EXPECT_EQ(session->state().step, 0);
+  EXPECT_EQ(session->state().history, 0u);
+  EXPECT_DOUBLE_EQ(session->state().parameters.gravity_y, -2);
+  step(*session);
+  session->stop();
+  const Recording recording = session->recording();
+  ASSERT_EQ(recording.steps.size(), 1u);
+  ASSERT_EQ(recording.steps[0].parameters.size(), 1u) << "the kept value must be recorded again";
+  EXPECT_EQ(replay(recording), recording.final_hash);
+}
+
+TEST(session, bounds_the_memory_of_the_history) {
+  SessionOptions options;
+  options.history_bytes = 100'000;
+  const auto session = make({.vertices = 300}, options);  // 14.4 kB a state
+  step(*session, 12);
+  EXPECT_LE(session->state().history_bytes, options.history_bytes);
+  EXPECT_GE(session->state().history, 4u);
+  EXPECT_LT(session->state().history, 7u);
+}
+
+TEST(session, pauses_on_a_refused_step_and_goes_on_with_a_smaller_one) {
+  const auto session = make({.refuse = 2, .refuse_above = 0.006});
+  session->set_real_time(false);
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  EXPECT_FALSE(session->state().playing);
+  EXPECT_EQ(session->state().step, 2);
+  EXPECT_EQ(session->state().report.offending.size(), 1u);
+  EXPECT_NE(session->state().failure.find("3 collisions"), std::string::npos);
+  session->set("step.time_step", 0.005);
+  session->play();
+  ASSERT_TRUE(wait_for_step(*session, 4));
+  EXPECT_FALSE(session->state().failed);
+  EXPECT_DOUBLE_EQ(session->state().parameters.time_step, 0.005);
+  session->stop();
+  EXPECT_EQ(replay(session->recording(), {.refuse = 2, .refuse_above = 0.006}),
+            session->recording().final_hash);
+}
+
+TEST(session, refuses_to_run_from_a_bad_start_state) {
+  SessionOptions options;
+  options.refusal = "2 pairs of faces cross";
+  const auto session = make({}, options);
+  EXPECT_TRUE(session->state().failed);
+  session->play();
+  session->step_once();
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  session->take();
+  EXPECT_EQ(session->state().step, 0);
+  EXPECT_EQ(session->state().failure, options.refusal);
+}
+
+TEST(session, tells_when_the_solver_throws) {
+  const auto session = make({.explode = 1});
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  EXPECT_NE(session->state().failure.find("out of order"), std::string::npos);
+  EXPECT_FALSE(session->state().playing);
+}
+
+TEST(session, survives_a_lost_device) {
+  const auto session = make({.lose = 3, .on_device = true});
+  step(*session, 3);
+  const auto positions = session->state().positions;
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  EXPECT_EQ(session->state().failure, "The solver stopped: device lost");
+  EXPECT_EQ(session->state().positions, positions) << "the last that were told";
+  ASSERT_NE(session->state().on_device, nullptr);
+  EXPECT_EQ(session->state().on_device->failure, "the solver stopped");
+  session->step_back();
+  session->reset();
+  session->play();
+  session->save("/nonexistent/folder/file.json");
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes >= 1; }));
+  EXPECT_FALSE(session->state().playing);
+  EXPECT_EQ(session->state().failure, "The solver stopped: device lost");
+  EXPECT_EQ(session->state().positions, positions);
+  session->stop();
+}
+
+TEST(session, hands_nothing_out_for_a_solver_on_the_cpu) {
+  const auto session = make();
+  step(*session, 2);
+  EXPECT_EQ(session->state().on_device, nullptr);
+}
+
+/// The state that is looked at stays whole, on the device too, while the solver goes on.
+TEST(session, every_slot_has_positions_of_its_own_on_the_device) {
+  const auto session = make({.vertices = 300, .on_device = true});
+  session->set_real_time(false);
+  session->play();
+  std::vector<const Vec3f*> memories;
+  std::int64_t step = 0;
+  for (int k = 0; k < 40; ++k) {
+    ASSERT_TRUE(wait_for_step(*session, step + 1));
+    const PublishedState& state = session->state();
+    step = state.step;
+    ASSERT_NE(state.on_device, nullptr);
+    ASSERT_EQ(state.on_device->count, 300);
+    if (std::ranges::find(memories, state.on_device->data) == memories.end())
+      memories.push_back(state.on_device->data);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the solver publishes meanwhile
+    for (std::size_t v = 0; v < 300; ++v) ASSERT_EQ(state.on_device->data[v], state.positions[v]);
+  }
+  EXPECT_LE(memories.size(), 3u) << "the memory of a slot is used again";
+  EXPECT_GE(memories.size(), 2u);
+}
+
+TEST(session, plays_the_scene_s_own_grabs_only_when_asked) {
+  auto simulator = std::make_unique<FakeSimulator>();
+  ScriptedGrab grab;
+  grab.release = 10;
+  grab.path = {{0, {0, 2, 0}}};
+  simulator->scene_for_setup().input.push_back(grab);
+  Session session(std::move(simulator), {});
+  step(session, 2);
+  EXPECT_TRUE(session.state().handles.empty());
+  session.set_scripted(true);
+  step(session);
+  ASSERT_EQ(session.state().handles.size(), 1u);
+  EXPECT_EQ(session.state().handles[0].handle, kFirstScriptedHandle);
+  session.set_scripted(false);
+  step(session);
+  EXPECT_TRUE(session.state().handles.empty());
+}
+
+TEST(session, saves_and_says_so) {
+  const auto session = make();
+  step(*session, 2);
+  const std::string path = ::testing::TempDir() + "session_test.json";
+  session->save(path);
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
+  EXPECT_NE(session->state().note.find(path), std::string::npos);
+  EXPECT_EQ(load_recording(path).steps.size(), 2u);
+  std::remove(path.c_str());
+  session->save("/nonexistent/folder/file.json");
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 2; }));
+  EXPECT_NE(session->state().note.find("not saved"), std::string::npos);
+}
+
+TEST(session, refuses_values_out_of_range_with_a_note) {
+  const auto session = make();
+  session->set("step.time_step", 50);
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
+  EXPECT_NE(session->state().note.find("step.time_step"), std::string::npos);
+  EXPECT_DOUBLE_EQ(session->state().parameters.time_step, 0.01);
+}
+
+}  // namespace
+}  // namespace icloth
