@@ -29,8 +29,8 @@ Hands::Held Hands::grab(const InputEvent& event, const Parameters& parameters,
   held.corners = world_->face[at(event.face)];
   held.barycentric = event.barycentric;
   held.target = event.target;
-  held.stiffness = event.stiffness > 0 ? event.stiffness : parameters.grab_stiffness;
-  const double radius = event.radius > 0 ? event.radius : parameters.grab_radius;
+  held.stiffness = event.stiffness > 0 ? event.stiffness : parameters.grab.stiffness;
+  const double radius = event.radius > 0 ? event.radius : parameters.grab.radius;
   const Vec3d centre = interpolate(held.corners, held.barycentric, world_->rest);
   const Vec3d start = interpolate(held.corners, held.barycentric, positions);
   const Index object = world_->object[at(held.corners[0])];
@@ -83,7 +83,7 @@ std::vector<Index> Hands::watched() const {
 }
 
 void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners) {
-  const double reach = parameters.grab_max_speed * dt;
+  const double reach = parameters.grab.max_speed * dt;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     Held& h = held_[k];
     const Vec3d way = h.target - h.followed;
@@ -92,9 +92,9 @@ void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec
     // A pull beyond the largest force would only stretch the patch.
     const Vec3d here = hit(k, h.barycentric, corners), pull = h.followed - here;
     const double force = h.stiffness * norm(pull);
-    h.saturation = std::min(force / parameters.grab_max_force, 1.0);
-    h.pulled_to = force > parameters.grab_max_force
-                      ? here + (parameters.grab_max_force / force) * pull
+    h.saturation = std::min(force / parameters.grab.max_force, 1.0);
+    h.pulled_to = force > parameters.grab.max_force
+                      ? here + (parameters.grab.max_force / force) * pull
                       : h.followed;
   }
 }

@@ -30,14 +30,14 @@ void check_resolution(const Scene& scene, const World& world) {
   for (Index v = 0; v < world.cloth_vertices; ++v) {
     const auto i = static_cast<std::size_t>(v);
     const double far = norm_max(world.position[i]), resolution = far * 0x1p-23;
-    if (resolution <= 0.5 * scene.parameters.offset) continue;
+    if (resolution <= 0.5 * scene.parameters.impact_zones.offset) continue;
     const WorldObject& object = world.objects[static_cast<std::size_t>(world.object[i])];
     char text[200];
     std::snprintf(text, sizeof text,
                   "', vertex %d: %g m from the origin, where single precision resolves %.1e m; "
                   "expected half of impact_zones.offset (%g m) or less, or --precision f64",
                   static_cast<int>(v - object.first_vertex), far, resolution,
-                  scene.parameters.offset);
+                  scene.parameters.impact_zones.offset);
     throw InputError("cloth '" + object.name + text);
   }
 }

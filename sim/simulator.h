@@ -56,8 +56,8 @@ class Simulator {
   virtual Build build() const = 0;
   virtual const Scene& scene() const = 0;
 
-  /// One step of parameters().time_step. Never throws for numerical reasons: a refused step keeps
-  /// the state before it and says so in the report.
+  /// One step of parameters().step.time_step. Never throws for numerical reasons: a refused step
+  /// keeps the state before it and says so in the report.
   virtual StepReport step(std::span<const InputEvent> events) = 0;
 
   virtual const Parameters& parameters() const = 0;

@@ -135,13 +135,14 @@ void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
   upload_fabrics(mesh_, *scene_, parameters);
-  if (mesh_.bends && parameters.bending_model == BendingModel::plate) upload_plates(mesh_, world_);
+  if (mesh_.bends && parameters.material.bending == BendingModel::plate)
+    upload_plates(mesh_, world_);
   if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
   pattern_bends_ = mesh_.bends;
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
   free_mass_ = 0;
   for (std::size_t i = 0; i < world_.mass.size(); ++i) {
-    mass.push_back(real(parameters.density_scale * world_.mass[i]));
+    mass.push_back(real(parameters.material.density_scale * world_.mass[i]));
     if (world_.pinned[i] != 0) continue;
     inverse[i] = Real(1) / mass[i];
     free_mass_ += static_cast<double>(mass[i]);
@@ -198,10 +199,10 @@ void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
 int Solver::travel_level() const {
   const double speed = static_cast<double>(
       reduce("step.speed", mesh_.vertices, Real(0), Speed{state_.v.view()}, Max{}));
-  const double reach = parameters_.max_travel * world_.median_edge;
+  const double reach = parameters_.step.max_travel * world_.median_edge;
   int level = 0;
-  for (double travel = speed * parameters_.time_step;
-       travel > reach && level < parameters_.max_substep_levels; travel *= 0.5)
+  for (double travel = speed * parameters_.step.time_step;
+       travel > reach && level < parameters_.step.max_substep_levels; travel *= 0.5)
     ++level;
   return level;
 }
@@ -268,7 +269,7 @@ void Solver::use_hands(std::span<const InputEvent> events) {
   });
   hands_.apply(events, parameters_, grabs ? cloth_positions() : std::vector<Vec3d>{});
   if (hands_.empty()) return;
-  hands_.advance(parameters_.time_step, parameters_, watched_positions());
+  hands_.advance(parameters_.step.time_step, parameters_, watched_positions());
   upload_as(springs_, hands_.springs(), [](const HandSpring& s) {
     return Spring{s.vertex, real(s.stiffness), to_real(s.target)};
   });

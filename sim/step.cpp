@@ -39,7 +39,7 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
   timed(report.ms_proximity, [&] {
-    if (parameters_.proximity_enabled)
+    if (parameters_.proximity.enabled)
       proximity_.find(step, broad_phase_);
     else
       proximity_.clear();
@@ -48,7 +48,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   report.finite = all_finite(state_);
   if (!report.finite) return false;
   // Half the step makes a quarter of the strain that a linear solve does not see.
-  if (!last_resort && implicit_.missed_tension() > parameters_.max_missed_tension) return false;
+  if (!last_resort && implicit_.missed_tension() > parameters_.implicit.max_missed_tension)
+    return false;
 
   return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
 }
@@ -60,13 +61,14 @@ bool Solver::resolve_by_zones(StepContext& step) {
     find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
     if (report.impacts_left == 0) return true;
-    if (round == parameters_.max_rounds || !parameters_.impact_zones_enabled) return false;
+    if (round == parameters_.impact_zones.max_rounds || !parameters_.impact_zones.enabled)
+      return false;
     ++report.rounds;
     timed(report.ms_impact_zones, [&] { impact_zones_.solve(step, ccd_.impacts()); });
     // A correction of more than about an edge would tear the fabric; half the step corrects less.
     const double correction = static_cast<double>(impact_zones_.largest_correction());
     report.finite = std::isfinite(correction);
-    if (!(correction <= parameters_.max_correction * world_.median_edge)) return false;
+    if (!(correction <= parameters_.impact_zones.max_correction * world_.median_edge)) return false;
   }
 }
 
@@ -74,7 +76,7 @@ bool Solver::resolve_by_zones(StepContext& step) {
 /// in the state of the start; where nothing is left to put back, moving obstacles squeeze the
 /// cloth.
 bool Solver::resolve_by_rollback(StepContext& step) {
-  if (!step.report.finite || !parameters_.impact_zones_enabled) return false;
+  if (!step.report.finite || !parameters_.impact_zones.enabled) return false;
   impact_zones_.back_to_candidate(step);
   find_impacts(step, true);
   while (step.report.impacts_left > 0) {
@@ -91,7 +93,7 @@ bool Solver::resolve_by_rollback(StepContext& step) {
 /// All pairs in the first round; later, unless told otherwise, those with a dirty vertex.
 void Solver::find_impacts(StepContext& step, bool first_round) {
   StepReport& report = step.report;
-  const bool incremental = !first_round && parameters_.ccd_incremental;
+  const bool incremental = !first_round && parameters_.ccd.incremental;
   timed(report.ms_broad_phase, [&] {
     if (incremental)
       broad_phase_.cover_dirty(step, impact_zones_.dirty());
@@ -108,13 +110,13 @@ StepReport Solver::step(std::span<const InputEvent> events) {
   use_device();
   StepReport report;
   report.step = step_index_;
-  report.dt = parameters_.time_step;
+  report.dt = parameters_.step.time_step;
   timed(report.ms_total, [&] {
     match_yarns(mesh_, parameters_, state_);
     save_start();
     use_hands(events);
     // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.
-    const int levels = parameters_.max_substep_levels;
+    const int levels = parameters_.step.max_substep_levels;
     const std::int64_t whole = std::int64_t{1} << levels;
     std::int64_t done = 0;
     int level = travel_level();

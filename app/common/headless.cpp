@@ -30,7 +30,8 @@ void print_refusal(const Scene& scene, const StepReport& report) {
 /// Input of one step: from the recording where there is one, else from the scene's script.
 Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long step,
                            const Simulator& simulator) {
-  if (!job.input) return {script.events(simulator.time(), simulator.parameters().time_step), {}};
+  if (!job.input)
+    return {script.events(simulator.time(), simulator.parameters().step.time_step), {}};
   const auto index = static_cast<std::size_t>(step);
   return index < job.input->steps.size() ? job.input->steps[index] : Recording::Step{};
 }

@@ -116,7 +116,7 @@ Build choose_build(const SimulationOptions& options) {
 long step_count(const SimulationOptions& options, const Scene& scene) {
   if (options.steps >= 0) return options.steps;
   const double time = options.time >= 0 ? options.time : scene.duration;
-  return std::lround(std::min(time / scene.parameters.time_step, double(kMostSteps)));
+  return std::lround(std::min(time / scene.parameters.step.time_step, double(kMostSteps)));
 }
 
 std::string command_arguments(const SimulationOptions& options, Build build) {

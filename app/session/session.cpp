@@ -260,7 +260,7 @@ Recording::Step Session::next_step() {
   step.events = std::exchange(pending_, {});
   if (script_) {
     for (const InputEvent& event :
-         script_->events(simulator_->time(), simulator_->parameters().time_step)) {
+         script_->events(simulator_->time(), simulator_->parameters().step.time_step)) {
       step.events.push_back(event);
     }
   }
@@ -289,7 +289,7 @@ void Session::advance() {
   recorded_parameters_ = simulator_->parameters();
   recording_.steps.push_back(std::move(step));
   const auto interval = std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(recorded_parameters_.time_step));
+      std::chrono::duration<double>(recorded_parameters_.step.time_step));
   due_ = options_.real_time ? std::max(due_ + interval, begin) : begin;
   finish(report_);
 }

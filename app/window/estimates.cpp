@@ -9,7 +9,7 @@ namespace icloth {
 namespace {
 
 /// |gravity| [m/s²].
-double gravity_of(const Parameters& p) { return std::hypot(p.gravity_x, p.gravity_y, p.gravity_z); }
+double gravity_of(const Parameters& p) { return std::hypot(p.gravity.x, p.gravity.y, p.gravity.z); }
 
 std::string momentum_in_g(const StepReport& report, const Parameters& p) {
   const double share = report.momentum_error / gravity_of(p);
@@ -35,11 +35,13 @@ std::string percent(double share) { return short_number(100 * share) + " %"; }
 
 /// How deep the closest pair is inside the thickness h, 0 … 1.
 double gap_violation(const StepReport& report, const Parameters& p) {
-  return p.thickness > 0 ? std::clamp(1 - report.min_gap / p.thickness, 0.0, 1.0) : 0;
+  return p.proximity.thickness > 0
+             ? std::clamp(1 - report.min_gap / p.proximity.thickness, 0.0, 1.0)
+             : 0;
 }
 
 double zone_violation(const StepReport& report, const Parameters& p) {
-  return p.offset > 0 ? report.zone_violation / p.offset : 0;
+  return p.impact_zones.offset > 0 ? report.zone_violation / p.impact_zones.offset : 0;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ void ParameterEdits::apply(const ParameterInfo& info, double value) {
 
 void ParameterEdits::set(const ParameterInfo& info, double value, bool continued) {
   if (!std::isfinite(value)) return;
-  if (!std::holds_alternative<double Parameters::*>(info.member)) value = std::round(value);
+  if (info.field.kind != ParameterInfo::Kind::number) value = std::round(value);
   value = std::clamp(value, info.minimum, info.maximum);
   const double before = this->value(info);
   if (value == before) return;

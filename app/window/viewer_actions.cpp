@@ -83,13 +83,13 @@ bool Viewer::act_on_hands(Action action, double amount) {
       drag_.change_depth(amount, cursor_ray());
       return true;
     case Action::grab_radius:
-      drag_.set_defaults(edits_.values().grab_radius, edits_.values().grab_stiffness);
+      drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
       drag_.change_radius(amount);
       edits_.set(*find_parameter("grab.radius"), drag_.radius(), true);
       tell("Size of the grabbed patch: " + std::to_string(drag_.radius()) + " m");
       return true;
     case Action::grab_stiffness:
-      drag_.set_defaults(edits_.values().grab_radius, edits_.values().grab_stiffness);
+      drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
       drag_.change_stiffness(amount);
       edits_.set(*find_parameter("grab.stiffness"), drag_.stiffness(), true);
       tell("Strength of the pull: " + std::to_string(std::lround(drag_.stiffness())) + " N/m");

@@ -96,7 +96,7 @@ void Viewer::handle(const WindowEvent& event) {
 void Viewer::press(const WindowEvent& event) {
   move(event);
   if (!in_view(x_, y_) || ui_.popup_open()) return;
-  drag_.set_defaults(edits_.values().grab_radius, edits_.values().grab_stiffness);
+  drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
   const bool twice = event.code == button::kLeft && event.time - press_time_ < kDoubleClickTime &&
                      std::hypot(x_ - press_x_, y_ - press_y_) < kClickSlack;
   press_x_ = x_;

@@ -94,8 +94,8 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
            FaceBoxes{mesh.face.view(), vertex_box_.view(), face_box_.view()});
   for_each("broad_phase.edge_boxes", mesh.edges,
            EdgeBoxes{mesh.edge.view(), vertex_box_.view(), edge_box_.view()});
-  if (step.parameters.broad_phase_method == BroadPhaseMethod::tree) {
-    const bool rebuild = !boxes_valid_ || ++refits_ >= step.parameters.rebuild_interval;
+  if (step.parameters.broad_phase.method == BroadPhaseMethod::tree) {
+    const bool rebuild = !boxes_valid_ || ++refits_ >= step.parameters.broad_phase.rebuild_interval;
     if (rebuild) refits_ = 0;
     tree_.update(mesh, boxes(), rebuild);
   }
@@ -112,19 +112,19 @@ Real BroadPhase::slack(const StepContext& step) {
 void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dirty) {
   const bool all = dirty.size() == 0;
   candidates_.clear();
-  tree_.count_tests = step.parameters.count_box_tests;
+  tree_.count_tests = step.parameters.broad_phase.count_tests;
   const auto find = [&](auto& finder) {
     if (all)
       finder.find(step.mesh, boxes(), candidates_);
     else
       finder.find_dirty(step.mesh, boxes(), dirty, candidates_);
   };
-  if (step.parameters.broad_phase_method == BroadPhaseMethod::tree)
+  if (step.parameters.broad_phase.method == BroadPhaseMethod::tree)
     find(tree_);
   else
     find(hash_);
   complete_ = all;
-  if (step.parameters.count_box_tests) step.report.box_tests += candidates_.box_tests;
+  if (step.parameters.broad_phase.count_tests) step.report.box_tests += candidates_.box_tests;
 }
 
 bool BroadPhase::covers(StepContext& step, bool predicted, Real margin) const {

@@ -82,7 +82,7 @@ Collisions detect_collisions(std::span<const Vec3d> start, std::span<const Vec3d
   const auto vertices = static_cast<Index>(start.size());
   const Topology mesh = make_topology(faces, vertices);
   Parameters parameters;
-  parameters.thickness = parameters.offset = 0;  // boxes without padding
+  parameters.proximity.thickness = parameters.impact_zones.offset = 0;  // boxes without padding
   State state;
   upload(state.x0, start);
   upload(state.x1, end);

@@ -206,11 +206,11 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
   results_.resize(zones);
   const ZoneSettings settings{step.offset(),
                               Real(0.2) * step.offset(),
-                              p.zone_iterations,
-                              static_cast<Real>(p.penalty),
-                              static_cast<Real>(p.rho),
-                              static_cast<Real>(p.step_threshold),
-                              p.chebyshev};
+                              p.impact_zones.iterations,
+                              static_cast<Real>(p.impact_zones.penalty),
+                              static_cast<Real>(p.impact_zones.rho),
+                              static_cast<Real>(p.impact_zones.step_threshold),
+                              p.impact_zones.chebyshev};
   const ZoneArrays arrays{constraints_.view(),  constraint_first_.view(),
                           vertex_first_.view(), incidence_.first(),
                           incidence_.entries(), target_.view(),
@@ -220,7 +220,7 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
                           multiplier_.view(),   shortfall_.view(),
                           trial_.view(),        scale_.view(),
                           results_.view()};
-  switch (p.zone_solver) {
+  switch (p.impact_zones.solver) {
     case ZoneSolver::augmented_lagrangian:
       solve_zones(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
       break;

@@ -251,7 +251,7 @@ void Proximity::ramp_thickness(const StepContext& step) {
 void Proximity::keep_friction(const State& state, const Parameters& parameters, Real dt) {
   held_.resize(0);
   if (!rubs_) return;
-  const ContactLaw law{static_cast<Real>(parameters.repulsion_stiffness), dt};
+  const ContactLaw law{static_cast<Real>(parameters.proximity.stiffness), dt};
   collect("proximity.keep_friction", contacts_.size(),
           KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, held_);
 }
@@ -282,8 +282,8 @@ void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
                            h + static_cast<Real>(0.5) * mesh.median_edge,
                            step.dt,
                            step.dt * step.gravity(),
-                           static_cast<Real>(step.parameters.friction_cloth),
-                           static_cast<Real>(step.parameters.friction_obstacle),
+                           static_cast<Real>(step.parameters.proximity.friction_cloth),
+                           static_cast<Real>(step.parameters.proximity.friction_obstacle),
                            mesh.object_friction.view()};
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);

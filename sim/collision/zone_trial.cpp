@@ -56,15 +56,15 @@ TrialZone make_zone(Index side) {
 
 ZoneSettings make_settings(int iterations) {
   const Parameters p;
-  const Real offset = static_cast<Real>(p.offset);
+  const Real offset = static_cast<Real>(p.impact_zones.offset);
   // In double precision the trial is the reference: it goes on until nothing moves.
   return {offset,
           sizeof(Real) == 8 ? Real(1e-10) * offset : Real(0.2) * offset,
           iterations,
-          static_cast<Real>(p.penalty),
-          static_cast<Real>(p.rho),
-          static_cast<Real>(p.step_threshold),
-          p.chebyshev};
+          static_cast<Real>(p.impact_zones.penalty),
+          static_cast<Real>(p.impact_zones.rho),
+          static_cast<Real>(p.impact_zones.step_threshold),
+          p.impact_zones.chebyshev};
 }
 
 /// One zone in the memory of the device.

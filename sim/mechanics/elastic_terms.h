@@ -31,9 +31,9 @@ struct Wind {
 };
 
 inline Wind wind_of(const Parameters& p) {
-  return {{static_cast<Real>(p.wind_x), static_cast<Real>(p.wind_y), static_cast<Real>(p.wind_z)},
-          static_cast<Real>(p.air_density),
-          static_cast<Real>(p.air_drag)};
+  return {{static_cast<Real>(p.wind.x), static_cast<Real>(p.wind.y), static_cast<Real>(p.wind.z)},
+          static_cast<Real>(p.wind.air_density),
+          static_cast<Real>(p.wind.air_drag)};
 }
 
 /// What the air does to each corner of a face: force − slope Δv of the corner.

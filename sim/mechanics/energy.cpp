@@ -70,7 +70,7 @@ struct PlateEnergy {
 
 double bending_energy(const Topology& mesh, const Parameters& parameters, View<const Vec3r> x) {
   if (!mesh.bends) return 0;
-  if (parameters.bending_model == BendingModel::plate)
+  if (parameters.material.bending == BendingModel::plate)
     return reduce("statistics.bending", mesh.cloth_faces, 0.0,
                   PlateEnergy{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
                               mesh.face_fabric.view(), mesh.fabric.view(), x},
@@ -150,7 +150,7 @@ StateFigures figures_of(const Topology& mesh, const Parameters& parameters, View
                             mesh.face_fabric.view(), mesh.fabric.view(), x},
              CombineFaces{});
   const double bending = bending_energy(mesh, parameters, x);
-  const Vec3d gravity{parameters.gravity_x, parameters.gravity_y, parameters.gravity_z};
+  const Vec3d gravity{parameters.gravity.x, parameters.gravity.y, parameters.gravity.z};
   const VertexEnergy motion =
       reduce("statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},
              MotionEnergy{x, v, mass, gravity}, CombineVertices{});

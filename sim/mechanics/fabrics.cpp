@@ -14,28 +14,31 @@ constexpr double kLimitFactor = 20;
 Real real(double value) { return static_cast<Real>(value); }
 
 void add_strain_limit(Fabric& f, const Material& material, const Parameters& p) {
-  const double limit = p.strain_limit > 0 ? p.strain_limit : material.strain_limit;
+  const double limit =
+      p.material.strain_limit > 0 ? p.material.strain_limit : material.strain_limit;
   if (!(limit > 0)) return;
   double stiffest = 0;
   for (const auto& row : material.stretching) stiffest = std::max({stiffest, row[0], row[2]});
   f.limit_strain = real(limit * (1 + limit / 2));
-  f.limit_stiffness = real(kLimitFactor * 2 * p.stretch_scale * stiffest);
+  f.limit_stiffness = real(kLimitFactor * 2 * p.material.stretch_scale * stiffest);
 }
 
 Fabric make_fabric(const Material& material, const Parameters& p) {
   Fabric f{};
   for (std::size_t row = 0; row < 6; ++row)
     for (std::size_t c = 0; c < 4; ++c)
-      f.stretching[row][c] = real(p.stretch_scale * material.stretching[row][c]);
+      f.stretching[row][c] = real(p.material.stretch_scale * material.stretching[row][c]);
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t c = 0; c < 5; ++c)
-      f.bending[row][c] = real(p.bend_scale * material.bending[row][c]);
+      f.bending[row][c] = real(p.material.bend_scale * material.bending[row][c]);
   f.damping = real(material.damping);
   f.measured = material.law == Material::Law::measured;
   f.bending_spacing = real(material.bending_spacing);
   f.bending_poisson = real(material.bending_poisson);
-  f.bending_friction = real(p.yarn_friction * p.bend_scale * material.bending_friction);
-  f.shear_friction = real(p.yarn_friction * p.stretch_scale * material.shear_friction);
+  f.bending_friction =
+      real(p.material.yarn_friction * p.material.bend_scale * material.bending_friction);
+  f.shear_friction =
+      real(p.material.yarn_friction * p.material.stretch_scale * material.shear_friction);
   add_strain_limit(f, material, p);
   return f;
 }
@@ -55,7 +58,7 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
   std::vector<Fabric> fabrics;
   for (const Cloth& cloth : scene.cloths)
     fabrics.push_back(make_fabric(cloth.material, parameters));
-  const bool tables = parameters.material_evaluation == MaterialEvaluation::table;
+  const bool tables = parameters.material.evaluation == MaterialEvaluation::table;
   mesh.stiffness_table.resize(tables ? StiffnessTable::kSize * static_cast<Index>(fabrics.size())
                                      : 0);
   for (std::size_t i = 0; tables && i < fabrics.size(); ++i) {

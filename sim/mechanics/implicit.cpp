@@ -317,10 +317,10 @@ void Implicit::set_up(const World& world, bool bending) {
 
 void Implicit::bend(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
-  const Real damping_extra = static_cast<Real>(step.parameters.damping_extra);
+  const Real damping_extra = static_cast<Real>(step.parameters.material.damping);
   if (!mesh.bends) return;
   hinge_terms_.resize(mesh.hinge_count);
-  if (step.parameters.bending_model == BendingModel::hinge) {
+  if (step.parameters.material.bending == BendingModel::hinge) {
     for_each("implicit.bending", mesh.hinge_count,
              BendingTerms{mesh.hinge.view(), mesh.fabric.view(), point, hinge_terms_.view(),
                           damping_extra});
@@ -343,7 +343,7 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Parameters& p = step.parameters;
-  const Real damping_extra = static_cast<Real>(p.damping_extra);
+  const Real damping_extra = static_cast<Real>(p.material.damping);
   face_terms_.resize(mesh.cloth_faces);
   rhs_.resize(mesh.cloth_vertices);
   for_each("implicit.membrane", mesh.cloth_faces,
@@ -381,14 +381,16 @@ void Implicit::integrate(StepContext& step, const Proximity& proximity) {
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
   drag_yarns(mesh, p, s);
-  rule_ = time_rule(p.integrator, static_cast<double>(step.dt), s.past.dt);
+  rule_ = time_rule(p.implicit.integrator, static_cast<double>(step.dt), s.past.dt);
   const View<const Vec3r> velocity = move_freely(step);
   Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), velocity, rule_.h};
   for (int iteration = 0;; ++iteration) {
     assemble(step, point);
     solve_with_contacts(step, proximity, iteration > 0);
     missed_tension_ = move(step, point);
-    if (iteration + 1 >= p.newton_iterations || !(missed_tension_ > p.newton_tolerance)) break;
+    if (iteration + 1 >= p.implicit.newton_iterations ||
+        !(missed_tension_ > p.implicit.newton_tolerance))
+      break;
     at_.copy_from(s.candidate);
     ahead_.resize(mesh.cloth_vertices);
     for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), rule_.h});
@@ -423,9 +425,9 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
   contact_terms_.resize(contacts.size());
   inverse_diagonal_.resize(mesh.cloth_vertices);
   contact_rhs_.resize(mesh.cloth_vertices);
-  const ContactLaw law{static_cast<Real>(step.parameters.repulsion_stiffness), rule_.h};
+  const ContactLaw law{static_cast<Real>(step.parameters.proximity.stiffness), rule_.h};
   VertexMotion motion{free_motion_.view(), dv_.view(), s.inverse_mass.view(), rule_.h, solved};
-  for (int pass = 0; pass < step.parameters.contact_passes; ++pass) {
+  for (int pass = 0; pass < step.parameters.implicit.contact_passes; ++pass) {
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), contact_terms_.view()});
     couplings_.gather(contacts.view(), contact_terms_.view(), mesh.cloth_vertices);
@@ -434,10 +436,10 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
              FinishRow{matrix_.row_first.view(), matrix_.value.view(), system.couplings,
                        s.inverse_mass.view(), rhs_.view(), contact_rhs_.view(),
                        inverse_diagonal_.view()});
-    const LinearSolution solution =
-        solver_.solve(system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
-                      {step.parameters.preconditioner, step.parameters.cg_tolerance,
-                       step.parameters.cg_max_iterations, pass > 0});
+    const LinearSolution solution = solver_.solve(
+        system, inverse_diagonal_.view(), contact_rhs_.view(), dv_.view(),
+        {step.parameters.implicit.preconditioner, step.parameters.implicit.cg_tolerance,
+         step.parameters.implicit.cg_max_iterations, pass > 0});
     step.report.cg_iterations += solution.iterations;
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
@@ -448,7 +450,8 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
         reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
                Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
     contact_work_ = contradiction.work;
-    if (!(contradiction.error > step.parameters.contact_tolerance * contradiction.load)) break;
+    if (!(contradiction.error > step.parameters.implicit.contact_tolerance * contradiction.load))
+      break;
   }
 }
 

@@ -53,7 +53,7 @@ struct YarnWork {
 };
 
 bool bend_as_plates(const Topology& mesh, const Parameters& p) {
-  return mesh.bends && p.bending_model == BendingModel::plate;
+  return mesh.bends && p.material.bending == BendingModel::plate;
 }
 
 FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, View<const Vec3r> x) {

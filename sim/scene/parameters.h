@@ -4,12 +4,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 
 namespace icloth {
 
-/// Settings of a running simulation. Every member has one row in parameter_table(), which holds
-/// its public name, unit, range and meaning; all of them may change between two steps.
 enum class ZoneSolver { augmented_lagrangian, dual, linear };
 enum class Preconditioner { block_jacobi, multilevel };
 enum class BroadPhaseMethod { tree, hash };
@@ -17,32 +14,45 @@ enum class MaterialEvaluation { direct, table };
 enum class BendingModel { hinge, plate };
 enum class Integrator { backward_euler, bdf2 };
 
-struct Parameters {
-  // step
+// The groups of settings. A member has the name that it has in JSON and on the command line; its
+// unit, range and meaning stand in its row of parameter_table().
+
+struct StepParameters {
   double time_step = 0.01;
   int max_substep_levels = 6;
   double max_travel = 2.0;
-  // forces
-  double gravity_x = 0.0, gravity_y = -9.81, gravity_z = 0.0;
-  double wind_x = 0.0, wind_y = 0.0, wind_z = 0.0;
+};
+
+struct GravityParameters {
+  double x = 0.0, y = -9.81, z = 0.0;
+};
+
+struct WindParameters {
+  double x = 0.0, y = 0.0, z = 0.0;
   double air_density = 1.0;
   double air_drag = 0.0;
-  // material
+};
+
+struct MaterialParameters {
   double stretch_scale = 1.0;
   double bend_scale = 1.0;
   double yarn_friction = 1.0;
   double density_scale = 1.0;
-  double damping_extra = 0.0;
+  double damping = 0.0;
   double strain_limit = 0.0;
-  MaterialEvaluation material_evaluation = MaterialEvaluation::direct;
-  BendingModel bending_model = BendingModel::plate;
-  // proximity
-  bool proximity_enabled = true;
+  BendingModel bending = BendingModel::plate;
+  MaterialEvaluation evaluation = MaterialEvaluation::direct;
+};
+
+struct ProximityParameters {
+  bool enabled = true;
   double thickness = 1e-3;
-  double repulsion_stiffness = 1e6;
+  double stiffness = 1e6;
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
-  // implicit
+};
+
+struct ImplicitParameters {
   Integrator integrator = Integrator::backward_euler;
   Preconditioner preconditioner = Preconditioner::multilevel;
   double cg_tolerance = 1e-3;
@@ -52,40 +62,70 @@ struct Parameters {
   int newton_iterations = 5;
   double newton_tolerance = 5;
   double max_missed_tension = 1e3;
-  // broad phase
-  BroadPhaseMethod broad_phase_method = BroadPhaseMethod::tree;
+};
+
+struct BroadPhaseParameters {
+  BroadPhaseMethod method = BroadPhaseMethod::tree;
   int rebuild_interval = 16;
-  bool count_box_tests = false;
-  // ccd
-  bool ccd_incremental = true;
-  // impact zones
-  bool impact_zones_enabled = true;
-  ZoneSolver zone_solver = ZoneSolver::dual;
+  bool count_tests = false;
+};
+
+struct CcdParameters {
+  bool incremental = true;
+};
+
+struct ImpactZoneParameters {
+  bool enabled = true;
+  ZoneSolver solver = ZoneSolver::dual;
   double offset = 1e-4;
   double penalty = 1e3;
   double rho = 0.9992;
-  int zone_iterations = 100;
+  int iterations = 100;
   double step_threshold = 1e-12;
   bool chebyshev = true;
   int max_rounds = 30;
   double max_correction = 1.0;
-  // hands
-  double grab_stiffness = 400.0;
-  double grab_radius = 0.02;
-  double grab_max_speed = 3.0;
-  double grab_max_force = 10.0;
+};
+
+struct GrabParameters {
+  double stiffness = 400.0;
+  double radius = 0.02;
+  double max_speed = 3.0;
+  double max_force = 10.0;
+};
+
+/// Settings of a running simulation; all of them may change between two steps.
+struct Parameters {
+  StepParameters step;
+  GravityParameters gravity;
+  WindParameters wind;
+  MaterialParameters material;
+  ProximityParameters proximity;
+  ImplicitParameters implicit;
+  BroadPhaseParameters broad_phase;
+  CcdParameters ccd;
+  ImpactZoneParameters impact_zones;
+  GrabParameters grab;
+};
+
+/// How the member behind a row is read, written and offered. Made by field() in parameters.cpp,
+/// which derives all of it from the type of the member.
+struct ParameterField {
+  enum class Kind { number, whole, boolean, choice };
+
+  Kind kind;
+  double (*get)(const Parameters&);
+  void (*set)(Parameters&, double);           ///< expects a value that is valid for the kind
+  std::span<const std::string_view> choices;  ///< names of the values 0, 1, … of a choice
 };
 
 struct ParameterInfo {
-  using Member = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
-                              ZoneSolver Parameters::*, BroadPhaseMethod Parameters::*,
-                              MaterialEvaluation Parameters::*, Preconditioner Parameters::*,
-                              BendingModel Parameters::*, Integrator Parameters::*>;
+  using Kind = ParameterField::Kind;
 
   std::string_view name;   ///< dotted public name, e.g. "impact_zones.penalty"
   std::string_view label;  ///< short text of the panel, with the paper's symbol
   std::string_view unit;   ///< SI unit, "" for none
-  Member member;
+  ParameterField field;
   double minimum, maximum;  ///< valid range (inclusive); sliders use it, out-of-range is an error
   bool logarithmic;         ///< slider scale
   std::string_view lower, higher;  ///< what smaller and larger values do
@@ -93,9 +133,6 @@ struct ParameterInfo {
   /// "PARAMETER=CHOICE" when the value matters with that choice only; else empty.
   std::string_view only_with = "";
 };
-
-/// Names of the values 0, 1, … of a parameter that is chosen by name; empty for numbers.
-std::span<const std::string_view> parameter_choices(const ParameterInfo& info);
 
 /// Whether the value matters with the present choices (see only_with).
 bool parameter_used(const Parameters& parameters, const ParameterInfo& info);

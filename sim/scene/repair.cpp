@@ -155,7 +155,7 @@ StartRepair repair_start(Scene& scene, double limit) {
   std::size_t fewest = pairs.size();
   int waited = 0;
   for (int sweep = 0; sweep < kMostSweeps && !pairs.empty() && waited < kPatience; ++sweep) {
-    Sweep moves(soup, scene.parameters.offset);
+    Sweep moves(soup, scene.parameters.impact_zones.offset);
     for (const IntersectingFaces& pair : pairs) moves.separate(pair.a, pair.b);
     moves.apply(limit);
     pairs = intersections(soup);

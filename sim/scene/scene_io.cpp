@@ -86,10 +86,10 @@ void fit_thickness(Scene& scene) {
   const double edge = median_edge(scene);
   if (!(edge > 0)) return;
   Parameters& p = scene.parameters;
-  p.thickness =
-      std::max(std::min(p.thickness, 0.3 * edge), find_parameter("proximity.thickness")->minimum);
-  p.offset =
-      std::max(std::min(p.offset, 0.05 * edge), find_parameter("impact_zones.offset")->minimum);
+  p.proximity.thickness = std::max(std::min(p.proximity.thickness, 0.3 * edge),
+                                   find_parameter("proximity.thickness")->minimum);
+  p.impact_zones.offset = std::max(std::min(p.impact_zones.offset, 0.05 * edge),
+                                   find_parameter("impact_zones.offset")->minimum);
 }
 
 void hang_by_highest(Cloth& cloth) {

@@ -63,11 +63,11 @@ struct StepContext {
   Real dt;            ///< [s]
   double time = 1e9;  ///< of the simulation, at the start of the substep [s]
 
-  Real offset() const { return static_cast<Real>(parameters.offset); }
-  Real thickness() const { return static_cast<Real>(parameters.thickness); }
+  Real offset() const { return static_cast<Real>(parameters.impact_zones.offset); }
+  Real thickness() const { return static_cast<Real>(parameters.proximity.thickness); }
   Vec3r gravity() const {
-    return {static_cast<Real>(parameters.gravity_x), static_cast<Real>(parameters.gravity_y),
-            static_cast<Real>(parameters.gravity_z)};
+    return {static_cast<Real>(parameters.gravity.x), static_cast<Real>(parameters.gravity.y),
+            static_cast<Real>(parameters.gravity.z)};
   }
 };
 

@@ -20,9 +20,9 @@ using testing::make_sheet;
 std::shared_ptr<Scene> sheet_scene(const GridShape& shape, Vec3d centre = {}) {
   auto scene = std::make_shared<Scene>();
   scene->cloths.push_back(make_sheet(shape, centre));
-  scene->parameters.air_density = 0;
-  scene->parameters.cg_tolerance = 1e-12;
-  scene->parameters.cg_max_iterations = 5000;
+  scene->parameters.wind.air_density = 0;
+  scene->parameters.implicit.cg_tolerance = 1e-12;
+  scene->parameters.implicit.cg_max_iterations = 5000;
   return scene;
 }
 
@@ -85,7 +85,7 @@ class Watched {
 TEST(EnergyBalance, OfFreeFallIsTheLossOfBackwardEuler) {
   Watched run(sheet_scene(lying(0.3, 200)));
   const Parameters& p = run.simulator().parameters();
-  const double loss = 0.5 * run.mass() * std::pow(p.time_step * p.gravity_y, 2);
+  const double loss = 0.5 * run.mass() * std::pow(p.step.time_step * p.gravity.y, 2);
   for (int k = 0; k < 20; ++k) EXPECT_NEAR(run.step().energy_balance, -loss, 1e-9 * loss);
   // Known again after a jump.
   const Snapshot here = run.simulator().snapshot();
@@ -93,17 +93,17 @@ TEST(EnergyBalance, OfFreeFallIsTheLossOfBackwardEuler) {
   run.simulator().restore(here);
   EXPECT_NEAR(run.step().energy_balance, -loss, 1e-9 * loss);
   Parameters heavier = p;
-  heavier.density_scale = 2;
+  heavier.material.density_scale = 2;
   run.simulator().set_parameters(heavier);
   EXPECT_NEAR(run.step().energy_balance, -2 * loss, 1e-9 * loss);
 }
 
 TEST(EnergyBalance, OfFreeFallIsNothingInSecondOrder) {
   auto scene = sheet_scene(lying(0.3, 200));
-  scene->parameters.integrator = Integrator::bdf2;
+  scene->parameters.implicit.integrator = Integrator::bdf2;
   Watched run(scene);
   const Parameters& p = run.simulator().parameters();
-  const double loss = 0.5 * run.mass() * std::pow(p.time_step * p.gravity_y, 2);
+  const double loss = 0.5 * run.mass() * std::pow(p.step.time_step * p.gravity.y, 2);
   EXPECT_NEAR(run.step().energy_balance, -loss, 1e-9 * loss);  // starts by backward Euler
   for (int k = 0; k < 30; ++k) {
     const StepReport& report = run.step();
@@ -115,15 +115,15 @@ TEST(EnergyBalance, OfFreeFallIsNothingInSecondOrder) {
 
 TEST(EnergyBalance, OfSubstepsAddsUp) {
   auto scene = sheet_scene(lying(0.3, 200));
-  scene->parameters.max_travel = 0.5;  // of an edge: fast cloth takes several substeps
+  scene->parameters.step.max_travel = 0.5;  // of an edge: fast cloth takes several substeps
   Watched run(scene);
   StepReport report;
   for (int k = 0; k < 60; ++k) report = run.step();
   ASSERT_GT(report.substeps, 1);
   const Parameters& p = run.simulator().parameters();
-  const double dt = p.time_step / static_cast<double>(report.substeps);
+  const double dt = p.step.time_step / static_cast<double>(report.substeps);
   const double loss =
-      0.5 * run.mass() * std::pow(dt * p.gravity_y, 2) * static_cast<double>(report.substeps);
+      0.5 * run.mass() * std::pow(dt * p.gravity.y, 2) * static_cast<double>(report.substeps);
   EXPECT_NEAR(report.energy_balance, -loss, 1e-8 * loss);
 }
 
@@ -131,7 +131,7 @@ TEST(EnergyBalance, OfClothHangingAtRestIsNothing) {
   auto scene = sheet_scene(hanging(0.2, 100));
   scene->cloths[0].pins = grid_vertices(make_grid(hanging(0.2, 100)), "top");
   scene->cloths[0].material.law = Material::Law::orthotropic;  // the measured law has no energy
-  scene->parameters.damping_extra = 0.05;
+  scene->parameters.material.damping = 0.05;
   Watched run(scene);
   StepReport report;
   double most = 0;
@@ -159,8 +159,8 @@ Unrolled unroll(double dt, int steps) {
     sheet.material.bending_friction = rub * 1e-4;
     sheet.material.shear_friction = rub;
     sheet.flat_angles = true;
-    scene->parameters.gravity_y = 0;
-    scene->parameters.time_step = dt;
+    scene->parameters.gravity.y = 0;
+    scene->parameters.step.time_step = dt;
     Watched run(scene);
     double first = 0, last = 0;
     for (int k = 0; k < steps; ++k) {
@@ -196,10 +196,10 @@ TEST(EnergyBalance, OfRubbingYarnsMakesNoEnergyInUsualSteps) {
 
 TEST(EnergyBalance, LeavesOutTheWorkOfTheAir) {
   auto scene = sheet_scene(hanging(0.3, 200));
-  scene->parameters.gravity_y = 0;
-  scene->parameters.air_density = 1.2;
-  scene->parameters.air_drag = 0.1;
-  scene->parameters.wind_z = 6, scene->parameters.wind_x = 2;
+  scene->parameters.gravity.y = 0;
+  scene->parameters.wind.air_density = 1.2;
+  scene->parameters.wind.air_drag = 0.1;
+  scene->parameters.wind.z = 6, scene->parameters.wind.x = 2;
   Watched run(scene);
   for (int k = 0; k < 20; ++k) {
     // Every face is as large as the next, so that the sheet flies as a whole.
@@ -215,13 +215,13 @@ TEST(EnergyBalance, LeavesOutTheWorkOfTheAir) {
 std::shared_ptr<Scene> landing_scene(double height) {
   auto scene = sheet_scene(lying(0.1, 100), {0.3, height, -0.1});
   scene->obstacles.push_back(make_obstacle(make_plane(2, 2, 2), {}));
-  scene->parameters.friction_obstacle = 0;
+  scene->parameters.proximity.friction_obstacle = 0;
   return scene;
 }
 
 TEST(EnergyBalance, LeavesOutTheWorkOfContacts) {
   auto scene = landing_scene(0.004);
-  scene->parameters.time_step = 0.002;
+  scene->parameters.step.time_step = 0.002;
   Watched run(scene);
   double work = 0, loss = 0;  // of the contacts, and of backward Euler
   for (int k = 0; k < 60; ++k) {
@@ -237,10 +237,10 @@ TEST(EnergyBalance, LeavesOutTheWorkOfContacts) {
 
 TEST(EnergyBalance, LeavesOutTheWorkOfImpactZones) {
   auto scene = landing_scene(0.004);
-  scene->parameters.proximity_enabled = false;
+  scene->parameters.proximity.enabled = false;
   Watched run(scene);
   const Parameters& p = run.simulator().parameters();
-  const double loss = 0.5 * run.mass() * std::pow(p.time_step * p.gravity_y, 2);
+  const double loss = 0.5 * run.mass() * std::pow(p.step.time_step * p.gravity.y, 2);
   std::int64_t rounds = 0;
   for (int k = 0; k < 20; ++k) {
     const StepReport& report = run.step();
@@ -252,7 +252,7 @@ TEST(EnergyBalance, LeavesOutTheWorkOfImpactZones) {
 
 TEST(EnergyBalance, LeavesOutTheWorkOfHands) {
   auto scene = sheet_scene(lying(0.2, 100));
-  scene->parameters.gravity_y = 0;
+  scene->parameters.gravity.y = 0;
   Watched run(scene);
   InputEvent event;
   event.handle = 1;
@@ -283,9 +283,9 @@ TEST(MomentumError, IsWhatARoughSolveMakesOrLoses) {
   for (const Preconditioner preconditioner :
        {Preconditioner::block_jacobi, Preconditioner::multilevel}) {
     auto scene = sheet_scene(lying(0.3, 400));
-    scene->parameters.preconditioner = preconditioner;
-    scene->parameters.cg_tolerance = 0.1;
-    scene->parameters.max_substep_levels = 0;
+    scene->parameters.implicit.preconditioner = preconditioner;
+    scene->parameters.implicit.cg_tolerance = 0.1;
+    scene->parameters.step.max_substep_levels = 0;
     // A wave that wants to straighten.
     for (Vec3d& x : scene->cloths[0].mesh.positions) x.y += 0.02 * std::sin(60 * x.x + 20 * x.z);
     Watched run(scene);
@@ -295,8 +295,8 @@ TEST(MomentumError, IsWhatARoughSolveMakesOrLoses) {
       const StepReport& report = run.step();
       ASSERT_EQ(report.substeps, 1);
       ASSERT_EQ(report.rounds, 0);
-      const Vec3d weight{0, run.mass() * p.gravity_y, 0};
-      const Vec3d made = (1 / p.time_step) * run.momentum_gained() - weight;
+      const Vec3d weight{0, run.mass() * p.gravity.y, 0};
+      const Vec3d made = (1 / p.step.time_step) * run.momentum_gained() - weight;
       EXPECT_NEAR(report.momentum_error, norm(made) / run.mass(), 1e-9);
       largest = std::max(largest, report.momentum_error);
     }
@@ -317,7 +317,7 @@ TEST(Estimates, OfARefusedStepAreZero) {
   Watched run(scene);
   run.step();
   Parameters wrong = run.simulator().parameters();
-  wrong.gravity_y = std::numeric_limits<double>::quiet_NaN();
+  wrong.gravity.y = std::numeric_limits<double>::quiet_NaN();
   run.simulator().set_parameters(wrong);
   const StepReport report = run.simulator().step({});
   EXPECT_FALSE(report.accepted);

@@ -60,8 +60,8 @@ StartedScene tangle(unsigned seed, BroadPhaseMethod method = BroadPhaseMethod::t
   scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 600), {0.02, 0.036, 0.01}));
   scene->cloths[0].pins = {0, 1, 2, 3, 4};
   scene->obstacles.push_back(testing::make_obstacle(make_sphere(0.1, 320), {0, -0.078, 0}));
-  scene->parameters.thickness = 4e-3;
-  scene->parameters.broad_phase_method = method;
+  scene->parameters.proximity.thickness = 4e-3;
+  scene->parameters.broad_phase.method = method;
   StageStart start;
   start.scene = scene.get();
   std::mt19937 random(seed);
@@ -163,7 +163,7 @@ struct ScarfRun {
     const auto simulator = make_simulator(build, scene);
     ScriptedInput script(*scene);
     for (int k = 0; k < steps; ++k) {
-      const auto events = script.events(simulator->time(), scene->parameters.time_step);
+      const auto events = script.events(simulator->time(), scene->parameters.step.time_step);
       const StepReport report = simulator->step(events);
       EXPECT_TRUE(report.accepted) << "step " << k;
       hashes.push_back(report.state_hash);

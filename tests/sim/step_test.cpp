@@ -24,7 +24,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 std::shared_ptr<Scene> new_scene() {
   auto scene = std::make_shared<Scene>();
   scene->name = "test";
-  scene->parameters.air_density = 0;
+  scene->parameters.wind.air_density = 0;
   return scene;
 }
 
@@ -100,10 +100,10 @@ INSTANTIATE_TEST_SUITE_P(Step, Builds, ::testing::Values(Build::cpu32, Build::cp
 TEST_P(Builds, FreeFallIsBackwardEuler) {
   auto scene = new_scene();
   scene->cloths.push_back(make_sheet(lying(0.3, 200), {}));
-  scene->parameters.cg_tolerance = 1e-6;  // it bounds the error of every step
+  scene->parameters.implicit.cg_tolerance = 1e-6;  // it bounds the error of every step
   const auto simulator = make(scene);
   const std::vector<Vec3d> start = simulator->snapshot().positions;
-  const double dt = scene->parameters.time_step, g = scene->parameters.gravity_y;
+  const double dt = scene->parameters.step.time_step, g = scene->parameters.gravity.y;
   for (int n = 1; n <= 40; ++n) {
     ASSERT_TRUE(simulator->step({}).accepted);
     const double t = n * dt, fall = 0.5 * g * t * (t + dt);
@@ -121,8 +121,8 @@ TEST_P(Builds, PinnedVerticesDoNotMoveByABit) {
   GridMesh grid = make_grid(hanging(0.3, 200));
   scene->cloths.push_back(make_sheet(hanging(0.3, 200), {0.123, 0.456, 0.789}));
   scene->cloths[0].pins = grid_vertices(grid, "top");
-  scene->parameters.wind_z = 4;
-  scene->parameters.air_density = 1;
+  scene->parameters.wind.z = 4;
+  scene->parameters.wind.air_density = 1;
   const auto simulator = make(scene);
   const Snapshot start = simulator->snapshot();
   for (int k = 0; k < 30; ++k) ASSERT_TRUE(simulator->step({}).accepted);
@@ -139,10 +139,10 @@ TEST_P(Builds, WindLiftsAFlag) {
   GridMesh grid = make_grid(hanging(0.3, 200));
   scene->cloths.push_back(make_sheet(hanging(0.3, 200), {}));
   scene->cloths[0].pins = grid_vertices(grid, "top");
-  scene->parameters.wind_z = 5;
+  scene->parameters.wind.z = 5;
   const auto still = make(scene);  // without air the wind does nothing
   auto windy = std::make_shared<Scene>(*scene);
-  windy->parameters.air_density = 1;
+  windy->parameters.wind.air_density = 1;
   const auto blown = make(windy);
   for (int k = 0; k < 40; ++k) {
     ASSERT_TRUE(still->step({}).accepted);
@@ -168,7 +168,7 @@ TEST_P(Builds, TwoSheetsOnABoxNeverIntersect) {
 
 TEST_P(Builds, ImpactZonesAloneHoldTheClothToo) {
   auto scene = ball_scene(150);
-  scene->parameters.proximity_enabled = false;
+  scene->parameters.proximity.enabled = false;
   const auto simulator = make(scene);
   run_cleanly(*simulator, 40);
 }
@@ -192,9 +192,9 @@ TEST_P(Builds, IncrementalDetectionAndTheBroadPhaseDoNotChangeABit) {
       for (int k = 0; k < 3; ++k)
         scene->cloths.push_back(make_sheet(lying(0.3, 300), {0.01 * k, 0.13 + 0.01 * k, 0}));
       scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 320), {}));
-      scene->parameters.proximity_enabled = false;  // everything is left to the impact zones
-      scene->parameters.ccd_incremental = incremental;
-      scene->parameters.broad_phase_method = method;
+      scene->parameters.proximity.enabled = false;  // everything is left to the impact zones
+      scene->parameters.ccd.incremental = incremental;
+      scene->parameters.broad_phase.method = method;
       const auto simulator = make(scene);
       std::int64_t rounds = 0;
       const auto states = hashes(*simulator, 30, rounds);
@@ -226,7 +226,7 @@ TEST_P(Builds, SnapshotAndRestoreGiveTheSameStateAndFuture) {
 
 TEST_P(Builds, TheTwoStepIntegratorHoldsTheClothAndGoesOnFromASnapshot) {
   auto scene = std::make_shared<Scene>(*ball_scene(150));
-  scene->parameters.integrator = Integrator::bdf2;
+  scene->parameters.implicit.integrator = Integrator::bdf2;
   const auto simulator = make(scene);
   run_cleanly(*simulator, 20);
   const Snapshot middle = simulator->snapshot();
@@ -269,7 +269,7 @@ TEST_P(Builds, RubbingYarnsGoOnFromASnapshotAndAreRefusedWithTheirStep) {
   for (int k = 0; k < 5; ++k) EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
 
   Parameters wrong = other->parameters();
-  wrong.gravity_y = std::numeric_limits<double>::quiet_NaN();
+  wrong.gravity.y = std::numeric_limits<double>::quiet_NaN();
   other->set_parameters(wrong);
   const Snapshot before = other->snapshot();
   EXPECT_FALSE(other->step({}).accepted);
@@ -305,9 +305,9 @@ TEST_P(Builds, SettingsTriedBetweenTwoStepsLeaveNoTraceInTheYarns) {
   };
   for (int k = 0; k < 20; ++k) {
     if (k % 5 == 4) {
-      tried([](Parameters& p) { p.yarn_friction = 0; });
-      tried([](Parameters& p) { p.bend_scale = 0; });
-      tried([](Parameters& p) { p.bending_model = BendingModel::hinge; });
+      tried([](Parameters& p) { p.material.yarn_friction = 0; });
+      tried([](Parameters& p) { p.material.bend_scale = 0; });
+      tried([](Parameters& p) { p.material.bending = BendingModel::hinge; });
       other->restore(other->snapshot());  // drops the boxes of the broad phase alike
     }
     ASSERT_EQ(simulator->step({}).state_hash, other->step({}).state_hash) << k;
@@ -319,7 +319,7 @@ TEST_P(Builds, YarnsOfSingleHingesLearnCurvaturesWhereverTheyComeFrom) {
   const auto scene = denim_scene(150);
   const auto live = make(scene), other = make(scene);
   Parameters hinges = scene->parameters;
-  hinges.bending_model = BendingModel::hinge;
+  hinges.material.bending = BendingModel::hinge;
   live->set_parameters(hinges);
   run_cleanly(*live, 20);
   const Snapshot middle = live->snapshot();
@@ -337,7 +337,7 @@ TEST_P(Builds, FrictionOfYarnsCanBeSwitchedAndOffIsNotThere) {
   plain.bending_friction = plain.shear_friction = 0;
   const auto simulator = make(denim_scene(150)), other = make(elastic);
   Parameters off = simulator->parameters();
-  off.yarn_friction = 0;
+  off.material.yarn_friction = 0;
   simulator->set_parameters(off);
   for (int k = 0; k < 20; ++k)
     EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
@@ -345,8 +345,8 @@ TEST_P(Builds, FrictionOfYarnsCanBeSwitchedAndOffIsNotThere) {
   // Single hinges know no curvature of a face: shear alone rubs, and bending where it comes back.
   for (const BendingModel model : {BendingModel::hinge, BendingModel::plate}) {
     Parameters on = off;
-    on.yarn_friction = 1;
-    on.bending_model = model;
+    on.material.yarn_friction = 1;
+    on.material.bending = model;
     simulator->set_parameters(on);
     run_cleanly(*simulator, 5);
     double bent = 0;
@@ -370,7 +370,7 @@ TEST_P(Builds, BendingSamplesFurtherApartAreSeen) {
 TEST_P(Builds, YarnsThatRubAHundredTimesAsHardHoldTheClothUp) {
   auto scene = denim_scene(150);
   const auto drop = [&](double friction) {
-    scene->parameters.yarn_friction = friction;
+    scene->parameters.material.yarn_friction = friction;
     const auto simulator = make(std::make_shared<Scene>(*scene));
     run_cleanly(*simulator, 60);
     double lowest = 1;
@@ -438,7 +438,7 @@ TEST_P(Builds, FrictionHoldsOnASlope) {
     scene->obstacles.push_back(make_obstacle(make_box({0.8, 0.02, 0.3}, 0.1), {}));
     for (Vec3d& p : scene->cloths[0].mesh.positions) p = tilt(p);
     for (Vec3d& p : scene->obstacles[0].mesh.positions) p = tilt(p);
-    scene->parameters.friction_obstacle = friction;
+    scene->parameters.proximity.friction_obstacle = friction;
     return scene;
   };
   EXPECT_LT(slide(make(scene_with(0.6))), 0.002);
@@ -475,8 +475,8 @@ std::array<double, 3> ways(Simulator& simulator, int steps) {
 
 TEST_P(Builds, EveryBodyHasItsOwnFriction) {
   auto scene = slopes({0.6, 0.1, std::nullopt});
-  scene->parameters.friction_cloth = 0;
-  scene->parameters.friction_obstacle = 0.6;
+  scene->parameters.proximity.friction_cloth = 0;
+  scene->parameters.proximity.friction_obstacle = 0.6;
   const auto simulator = make(scene);
   ways(*simulator, 10);  // they lie down
   const auto first = ways(*simulator, 30);
@@ -484,7 +484,7 @@ TEST_P(Builds, EveryBodyHasItsOwnFriction) {
   EXPECT_GT(first[1], 0.03);
   EXPECT_LT(first[2], 0.002);
   Parameters smooth = simulator->parameters();
-  smooth.friction_obstacle = 0;  // of the third body alone
+  smooth.proximity.friction_obstacle = 0;  // of the third body alone
   simulator->set_parameters(smooth);
   const auto second = ways(*simulator, 30);
   EXPECT_LT(second[0], 0.002);
@@ -545,7 +545,7 @@ TEST_P(Builds, NumbersThatAreNotFiniteAreRefused) {
   const Parameters sane = wrong;
   for (const double gravity :
        {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    wrong.gravity_y = gravity;
+    wrong.gravity.y = gravity;
     simulator->set_parameters(wrong);
     expect_refused(*simulator, false);
   }
@@ -558,7 +558,7 @@ TEST_P(Builds, HugeForcesNeverPullTheClothThroughABody) {
   const auto simulator = make(ball_scene(60));
   const Soup soup(simulator->scene());
   Parameters huge = simulator->parameters();
-  huge.gravity_y = -1e9;
+  huge.gravity.y = -1e9;
   simulator->set_parameters(huge);
   const Snapshot before = simulator->snapshot();
   const StepReport report = simulator->step({});

@@ -55,7 +55,7 @@ class FakeSimulator : public Simulator {
     if (call == options_.explode) throw std::runtime_error("out of order");
     for (const InputEvent& event : events) apply(event);
     StepReport report;
-    report.dt = parameters_.time_step;
+    report.dt = parameters_.step.time_step;
     report.accepted =
         options_.refuse < 0 || call < options_.refuse || report.dt <= options_.refuse_above;
     if (report.accepted) advance();
@@ -133,7 +133,7 @@ class FakeSimulator : public Simulator {
   }
 
   void advance() {
-    const double dt = parameters_.time_step;
+    const double dt = parameters_.step.time_step;
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       Vec3d force = -9.0 * (positions_[v] - Vec3d{0, 1, 0});
       for (const auto& [id, event] : held_) force += 20.0 * (event.target - positions_[v]);

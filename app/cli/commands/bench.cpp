@@ -49,7 +49,7 @@ Json describe(const BenchCase& test, Build build, const Scene& scene,
   json["overrides"] = test.overrides;
   json["build"] = build_name(build);
   json["triangles"] = triangles;
-  json["time_step"] = scene.parameters.time_step;
+  json["time_step"] = scene.parameters.step.time_step;
   json["steps"] = result.statistics.steps();
   json["steps_per_second"] = result.statistics.steps_per_second();
   for (const ReportColumn& column : report_columns()) {

@@ -58,7 +58,7 @@ std::vector<Setting> settings(const TrialScene& scene) {
   add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});
   add("zone iterations", "impact_zones.iterations", {"10", "30", "1000"});
   list.push_back({"precision", "f64", {}, true});
-  const double thickness = trial_scene(scene, {})->parameters.thickness;
+  const double thickness = trial_scene(scene, {})->parameters.proximity.thickness;
   for (const double factor : {0.5, 2.0})
     list.push_back({"thickness",
                     format_number(1e3 * factor * thickness) + " mm",

@@ -24,9 +24,9 @@ const char* on_off(bool on) { return on ? "on" : "off"; }
 
 /// One attempt at the whole step, and nothing behind it.
 void single_attempt(Parameters& p) {
-  p.max_substep_levels = 0;
-  p.max_travel = 100;
-  p.max_correction = 100;
+  p.step.max_substep_levels = 0;
+  p.step.max_travel = 100;
+  p.impact_zones.max_correction = 100;
 }
 
 /// Fig. 13: impacts that are left without repulsion, without impact zones, and with both.
@@ -47,8 +47,8 @@ bool compare_responses(Build build, Report& report) {
       for (const Snapshot& state : frames.states()) {
         const StepReport step = frames.step(state, [&](Parameters& p) {
           single_attempt(p);
-          p.proximity_enabled = proximity;
-          p.impact_zones_enabled = zones;
+          p.proximity.enabled = proximity;
+          p.impact_zones.enabled = zones;
         });
         first += static_cast<double>(step.impacts_first);
         left += static_cast<double>(step.impacts_left);
@@ -76,8 +76,8 @@ void compare_incremental(Frames& frames, Report& report) {
     StepReport step[2];
     for (const bool incremental : {false, true})
       step[incremental ? 1 : 0] = frames.step(state, [&](Parameters& p) {
-        p.ccd_incremental = incremental;
-        p.count_box_tests = true;
+        p.ccd.incremental = incremental;
+        p.broad_phase.count_tests = true;
       });
     const auto number = [](std::int64_t value) { return static_cast<double>(value); };
     table.add(
@@ -114,9 +114,9 @@ void compare_zone_solvers(Frames& frames, Report& report) {
       double delta = 1;
       const StepReport step = frames.step(state, [&, chosen = solver](Parameters& p) {
         single_attempt(p);
-        p.zone_solver = chosen;
-        p.max_rounds = 200;
-        delta = p.offset;
+        p.impact_zones.solver = chosen;
+        p.impact_zones.max_rounds = 200;
+        delta = p.impact_zones.offset;
       });
       const double mine = step.ms_broad_phase + step.ms_ccd + step.ms_impact_zones;
       rounds += static_cast<double>(step.rounds);
@@ -240,8 +240,8 @@ void compare_broad_phases(Frames& frames, Report& report) {
     for (const Snapshot& state : frames.states()) {
       const auto with = [chosen = method](bool count_tests) {
         return [chosen, count_tests](Parameters& p) {
-          p.broad_phase_method = chosen;
-          p.count_box_tests = count_tests;
+          p.broad_phase.method = chosen;
+          p.broad_phase.count_tests = count_tests;
         };
       };
       tests += static_cast<double>(frames.step(state, with(true)).box_tests);

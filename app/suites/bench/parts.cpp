@@ -22,9 +22,9 @@ std::vector<Part> parts(const Scene& whole) {
   const std::vector<Cloth> cloths = whole.cloths;
   return {
       {"one sheet: stretching, gravity, collision detection", [](Scene&) {}},
-      {"bending", [](Scene& s) { s.parameters.bend_scale = 1; }},
-      {"wind", [](Scene& s) { s.parameters.wind_z = 0.5, s.parameters.air_density = 1; }},
-      {"repulsion, without friction", [](Scene& s) { s.parameters.proximity_enabled = true; }},
+      {"bending", [](Scene& s) { s.parameters.material.bend_scale = 1; }},
+      {"wind", [](Scene& s) { s.parameters.wind.z = 0.5, s.parameters.wind.air_density = 1; }},
+      {"repulsion, without friction", [](Scene& s) { s.parameters.proximity.enabled = true; }},
       {"ball at rest before the sheet",
        [ball](Scene& s) {
          s.obstacles = {ball};
@@ -34,8 +34,8 @@ std::vector<Part> parts(const Scene& whole) {
       {"ball moves and pushes the sheet", [ball](Scene& s) { s.obstacles = {ball}; }},
       {"friction",
        [](Scene& s) {
-         s.parameters.friction_cloth = 0.6;
-         s.parameters.friction_obstacle = 0.3;
+         s.parameters.proximity.friction_cloth = 0.6;
+         s.parameters.proximity.friction_obstacle = 0.3;
        }},
       {"second sheet",
        [cloths](Scene& s) {
@@ -55,10 +55,10 @@ Scene bare(const Scene& whole) {
   scene.cloths = {whole.cloths.at(2)};
   scene.obstacles.clear();
   Parameters& p = scene.parameters;
-  p.bend_scale = 0;
-  p.proximity_enabled = false;
-  p.friction_cloth = p.friction_obstacle = 0;
-  p.air_density = p.air_drag = 0;
+  p.material.bend_scale = 0;
+  p.proximity.enabled = false;
+  p.proximity.friction_cloth = p.proximity.friction_obstacle = 0;
+  p.wind.air_density = p.wind.air_drag = 0;
   return scene;
 }
 

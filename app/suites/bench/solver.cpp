@@ -58,10 +58,10 @@ Measured measure(Frames& frames, const Snapshot& state, Preconditioner precondit
   profile_reset();
   profile_enable(true);
   const StepReport report = frames.step(state, [&](Parameters& p) {
-    p.preconditioner = preconditioner;
-    p.cg_tolerance = 1e-3;
-    p.cg_max_iterations = 5000;
-    if (first_solve) p.newton_iterations = p.contact_passes = 1;
+    p.implicit.preconditioner = preconditioner;
+    p.implicit.cg_tolerance = 1e-3;
+    p.implicit.cg_max_iterations = 5000;
+    if (first_solve) p.implicit.newton_iterations = p.implicit.contact_passes = 1;
   });
   profile_enable(false);
   measured.solves = report.newton_iterations, measured.iterations = report.cg_iterations;

@@ -51,15 +51,15 @@ void run(HeadlessJob& job, long every, int samples, Trial& now) {
     now.cg_iterations += share * static_cast<double>(report->cg_iterations);
     now.solves += share * static_cast<double>(report->newton_iterations);
     now.tests += share * static_cast<double>(report->elementary_tests);
-    now.pressed = std::max(now.pressed, 1 - report->min_gap / p.thickness);
+    now.pressed = std::max(now.pressed, 1 - report->min_gap / p.proximity.thickness);
     now.strain = std::max(now.strain, report->max_strain);
-    now.violation = std::max(now.violation, report->zone_violation / p.offset);
+    now.violation = std::max(now.violation, report->zone_violation / p.impact_zones.offset);
     if (report->step % every == 0) now.samples.push_back(sample_of(simulator, vertices, *report));
   };
   const HeadlessResult result = run_headless(job);
   now.penetrations = result.penetrations;
   now.finished = result.refused.empty() && !result.start_refused;
-  now.seconds = 1e-3 * ms / (p.time_step * static_cast<double>(job.steps));
+  now.seconds = 1e-3 * ms / (p.step.time_step * static_cast<double>(job.steps));
 }
 
 }  // namespace
@@ -77,10 +77,10 @@ Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrid
   job.scene = trial_scene(scene, overrides);
   job.build = build;
   job.quiet = true;
-  const double per_sample = scene.interval / job.scene->parameters.time_step;
+  const double per_sample = scene.interval / job.scene->parameters.step.time_step;
   const long every = std::lround(per_sample);
   if (std::fabs(per_sample - static_cast<double>(every)) > 1e-6)
-    throw InputError("a time step of " + std::to_string(job.scene->parameters.time_step) +
+    throw InputError("a time step of " + std::to_string(job.scene->parameters.step.time_step) +
                      " s does not divide the time between samples");
   Trial trial;
   for (const Cloth& cloth : job.scene->cloths) {

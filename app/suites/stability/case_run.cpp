@@ -117,7 +117,7 @@ bool CaseRun::steps(int count) {
 }
 
 bool CaseRun::run_for(double seconds) {
-  return steps(static_cast<int>(std::lround(seconds / simulator_->parameters().time_step)));
+  return steps(static_cast<int>(std::lround(seconds / simulator_->parameters().step.time_step)));
 }
 
 void CaseRun::require(bool holds, const std::string& what) {

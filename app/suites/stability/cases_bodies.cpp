@@ -25,7 +25,7 @@ std::shared_ptr<Scene> ball_through_sheet(const char* name, bool pinned, double 
 /// A lying sheet between two boxes; their distance is `closest` at half a second, then larger.
 std::shared_ptr<Scene> closing_boxes(const char* name, double closest) {
   auto scene = new_scene(name, 0.02);
-  scene->parameters.gravity_y = 0;
+  scene->parameters.gravity.y = 0;
   scene->cloths = {lying_sheet(0.15, 150, {})};
   for (const double side : {-1.0, 1.0}) {
     scene->obstacles.push_back(make_body(make_box({0.25, 0.02, 0.25}, 0.05), {}));
@@ -66,8 +66,8 @@ std::shared_ptr<Scene> belt_scene(double left, double right) {
   for (Vec3d& p : cylinder.positions) p = {p.y, p.z, p.x};
   for (Vec3d& p : cylinder.positions) p = {p.y, p.z, p.x};
   scene->obstacles = {make_body(std::move(cylinder), {})};
-  scene->parameters.friction_obstacle = 0.3;
-  scene->parameters.time_step = 0.005;
+  scene->parameters.proximity.friction_obstacle = 0.3;
+  scene->parameters.step.time_step = 0.005;
   return scene;
 }
 
@@ -75,7 +75,7 @@ std::shared_ptr<Scene> belt_scene(double left, double right) {
 
 void tunnelling_ball(CaseRun& run) {
   auto scene = ball_through_sheet("ball at 30 m/s", false, 0, 2.0 / 30, 0);
-  scene->parameters.time_step = 0.02;
+  scene->parameters.step.time_step = 0.02;
   run.start(scene);
   run.run_for(run.brief() ? 0.1 : 0.3);
 }
@@ -104,7 +104,7 @@ void box_corner(CaseRun& run) {
 void narrow_gap(CaseRun& run) {
   // Room for the sheet, below its thickness on each side.
   auto scene = closing_boxes("narrow gap", 0);
-  run.start(closing_boxes("narrow gap", 5 * scene->parameters.offset));
+  run.start(closing_boxes("narrow gap", 5 * scene->parameters.impact_zones.offset));
   run.run_for(1.0);
 }
 
@@ -137,7 +137,7 @@ void teleport(CaseRun& run) {
 void skirt(CaseRun& run) {
   constexpr double kPi = std::numbers::pi;
   auto scene = new_scene("skirt on a swinging body", 0.02);
-  scene->parameters.time_step = 0.05;
+  scene->parameters.step.time_step = 0.05;
   scene->cloths = {make_tube(0.155, 0.38, 0.5, run.brief() ? 1000 : 4000)};
   scene->obstacles = {make_body(make_capsule(0.12, 0.6, 600), {0, -0.25, 0})};
   // Hips that turn and swing about the waist.

@@ -94,7 +94,7 @@ void stiff(CaseRun& run) {
   scene->obstacles[0].motion = {
       {0, {0.02, 0.1, -0.15}, {}}, {0.3, {0.02, 0.1, 0.1}, {}}, {0.6, {0.02, 0.1, -0.15}, {}}};
   // What friction on the ball holds back is stretched, however stiff it is.
-  scene->parameters.friction_obstacle = 0;
+  scene->parameters.proximity.friction_obstacle = 0;
   run.start(scene);
   run.run_for(run.brief() ? 0.3 : 1.0);
   run.require(run.figures().max_strain < (kExponent == 3 ? 0.1 : 0.05),
@@ -114,7 +114,7 @@ void huge_forces(CaseRun& run) {
   const Parameters sane = run.simulator().parameters();
   for (const double gravity : {-1e4, -1e9}) {
     Parameters huge = sane;
-    huge.gravity_y = gravity;
+    huge.gravity.y = gravity;
     run.simulator().set_parameters(huge);
     const StepReport report = run.step();
     run.note(report.accepted ? std::to_string(report.max_speed) + " m/s" : "refused");
@@ -125,7 +125,7 @@ void huge_forces(CaseRun& run) {
 
 void jerked_grab(CaseRun& run) {
   auto scene = sheet_on_ball("hand at 50 m/s", 0.4, run.brief() ? 200 : 600);
-  scene->parameters.grab_max_speed = 50;
+  scene->parameters.grab.max_speed = 50;
   run.start(scene);
   run.run_for(0.2);
   const InputEvent grab = grab_of_face(run, *scene, 1, 3);
@@ -135,7 +135,7 @@ void jerked_grab(CaseRun& run) {
   for (int k = 0; k < (run.brief() ? 30 : 200); ++k) {
     if (k % 4 == 0) goal = dice.point({-0.8, -0.14, -0.8}, {0.8, 0.8, 0.8});
     const Vec3d way = goal - target;
-    const double reach = 50 * scene->parameters.time_step;
+    const double reach = 50 * scene->parameters.step.time_step;
     target = norm(way) > reach ? target + (reach / norm(way)) * way : goal;
     run.step(std::vector{event(InputEvent::Kind::move, 1, target)});
   }
@@ -147,7 +147,7 @@ void changed_time_step(CaseRun& run) {
   constexpr double kSteps[] = {0.01, 1e-4, 0.1, 1e-3, 0.05, 1e-4, 0.02, 0.1, 0.005};
   for (int k = 0; k < (run.brief() ? 18 : 72); ++k) {
     Parameters p = run.simulator().parameters();
-    p.time_step = kSteps[static_cast<std::size_t>(k) % std::size(kSteps)];
+    p.step.time_step = kSteps[static_cast<std::size_t>(k) % std::size(kSteps)];
     run.simulator().set_parameters(p);
     run.step();
   }
@@ -172,7 +172,7 @@ void soak(CaseRun& run) {
   Dice dice;
   Hand hands[2];
   hands[1].handle = 1;
-  const double dt = scene->parameters.time_step;
+  const double dt = scene->parameters.step.time_step;
   const double duration = run.brief() ? 2 : run.settings().soak_seconds;
   for (long k = 0; k < std::lround(duration / dt); ++k) {
     std::vector<InputEvent> events;

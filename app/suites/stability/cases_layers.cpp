@@ -14,8 +14,8 @@ namespace {
 /// Two sheets side by side in one plane, the second flies into the first.
 void run_coplanar(CaseRun& run, Vec3d rotation, bool proximity) {
   auto scene = new_scene("two sheets in one plane", 0.03);
-  scene->parameters.gravity_y = 0;
-  scene->parameters.proximity_enabled = proximity;
+  scene->parameters.gravity.y = 0;
+  scene->parameters.proximity.enabled = proximity;
   scene->cloths = {lying_sheet(0.2, 100, {}), lying_sheet(0.2, 100, {0.206, 0, 0.011})};
   const Mat3<double> turn = rotation_matrix(rotation);
   for (Cloth& cloth : scene->cloths)
@@ -70,7 +70,7 @@ void coplanar_edges(CaseRun& run) {
 
 void folded_flat(CaseRun& run) {
   auto scene = new_scene("zigzag of 6 layers", 0.02);
-  const double gap = 1.2 * scene->parameters.offset;
+  const double gap = 1.2 * scene->parameters.impact_zones.offset;
   scene->cloths = {zigzag(6, 8, 8, 0.02, gap)};
   scene->obstacles = {make_body(make_box({0.5, 0.1, 0.5}, 0.1), {0.08, -0.05, -0.08})};
   run.start(scene);
@@ -87,7 +87,7 @@ void funnel(CaseRun& run) {
 
 void heavy_on_light(CaseRun& run) {
   auto scene = new_scene("20 layers", 0.03);
-  const double gap = 1.5 * scene->parameters.thickness;
+  const double gap = 1.5 * scene->parameters.proximity.thickness;
   for (int layer = 0; layer < 20; ++layer) {
     const bool heavy = layer == 19;
     const double shift = 0.002 * (layer % 3);
@@ -101,7 +101,7 @@ void heavy_on_light(CaseRun& run) {
 
 void limp_heap(CaseRun& run) {
   auto scene = new_scene("limp sheet on a floor", 0.02);
-  scene->parameters.bend_scale = 0;
+  scene->parameters.material.bend_scale = 0;
   scene->cloths = {hanging_sheet(0.3, run.brief() ? 300 : 1000, {0, 0.16, 0})};
   scene->obstacles = {make_body(make_plane(0.8, 0.8, 0.1), {})};
   run.start(scene);

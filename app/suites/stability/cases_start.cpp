@@ -50,7 +50,7 @@ void start_intersection(CaseRun& run) {
 void start_below_offset(CaseRun& run) {
   auto scene = new_scene("close sheets", 0.03);
   Parameters& p = scene->parameters;
-  const double gap = 0.1 * p.offset;
+  const double gap = 0.1 * p.impact_zones.offset;
   scene->cloths = {lying_sheet(0.3, 200, {}), lying_sheet(0.3, 200, {0.002, gap, 0.001}),
                    lying_sheet(0.3, 200, {0, 2 * gap, 0})};
   scene->obstacles = {make_body(make_box({0.5, 0.1, 0.5}, 0.1), {0, -0.05 - gap, 0})};
@@ -58,7 +58,7 @@ void start_below_offset(CaseRun& run) {
   run.run_for(run.brief() ? 0.2 : 0.5);
   // The thickness of three layers, and no jump.
   const double top = highest(run.positions(), 3 * scene->cloths[0].mesh.positions.size());
-  run.require(top < 4 * p.thickness + 0.01, "the sheets stay on each other");
+  run.require(top < 4 * p.proximity.thickness + 0.01, "the sheets stay on each other");
   run.note("gap " + millimetres(gap) + ", ends " + millimetres(top) + " high");
 
   auto touching = new_scene("coincident sheets", 0.03);
@@ -82,8 +82,8 @@ void start_inside_a_body(CaseRun& run) {
 void thin_gap(CaseRun& run) {
   auto scene = new_scene("sheet close over a box", 0.03);
   Parameters& p = scene->parameters;
-  p.thickness = 8e-3;
-  p.offset = 1e-4;
+  p.proximity.thickness = 8e-3;
+  p.impact_zones.offset = 1e-4;
   const double gap = 2e-4;
   scene->cloths = {lying_sheet(0.3, 200, {0, gap, 0})};
   scene->obstacles = {make_body(make_box({0.5, 0.1, 0.5}, 0.05), {0, -0.05, 0})};
@@ -93,7 +93,8 @@ void thin_gap(CaseRun& run) {
     speed = std::max(speed, run.step().max_speed);
     top = std::max(top, highest(run.positions(), scene->cloths[0].mesh.positions.size()));
   }
-  run.require(top < 2 * p.thickness, "the sheet is not thrown higher than twice the thickness");
+  run.require(top < 2 * p.proximity.thickness,
+              "the sheet is not thrown higher than twice the thickness");
   run.note("rises to " + millimetres(top) + ", " + std::to_string(speed) + " m/s");
 }
 
@@ -108,7 +109,7 @@ void pinned_inside_a_body(CaseRun& run) {
   auto touching = new_scene("pinned close to a box", 0.03);
   touching->cloths = {make_cloth(shape, {0, 0, 0})};
   pin(touching->cloths[0], shape, "left");
-  const double gap = 0.2 * touching->parameters.offset;
+  const double gap = 0.2 * touching->parameters.impact_zones.offset;
   touching->obstacles = {make_body(make_box({0.1, 0.1, 0.5}, 0.05), {-0.15, -0.05 - gap, 0})};
   run.start(touching);
   run.run_for(run.brief() ? 0.3 : 1.0);
@@ -155,7 +156,7 @@ void not_finite(CaseRun& run) {
   run.steps(5);
   const Parameters sane = run.simulator().parameters();
   Parameters wrong = sane;
-  wrong.gravity_y = kNan;
+  wrong.gravity.y = kNan;
   run.allow_refusals();
   run.simulator().set_parameters(wrong);
   const StepReport refused = run.step();

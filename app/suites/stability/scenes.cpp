@@ -10,9 +10,9 @@ namespace icloth::stability {
 std::shared_ptr<Scene> new_scene(const char* name, double edge) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = name;
-  scene->parameters.air_density = 0;
-  scene->parameters.thickness = std::min(2e-3, 0.2 * edge);
-  scene->parameters.offset = 0.1 * scene->parameters.thickness;
+  scene->parameters.wind.air_density = 0;
+  scene->parameters.proximity.thickness = std::min(2e-3, 0.2 * edge);
+  scene->parameters.impact_zones.offset = 0.1 * scene->parameters.proximity.thickness;
   return scene;
 }
 

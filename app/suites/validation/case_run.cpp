@@ -37,8 +37,8 @@ void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<V
 void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit) {
   const Parameters before_all = parameters();
   Parameters p = before_all;
-  p.time_step = dt_first;
-  p.newton_iterations = 1;
+  p.step.time_step = dt_first;
+  p.implicit.newton_iterations = 1;
   for (int k = 0; k < limit; ++k) {
     simulator_->set_parameters(p);
     const std::vector<Vec3d> before = positions();
@@ -48,8 +48,8 @@ void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit
     for (std::size_t v = 0; v < after.size(); ++v)
       moved = std::max(moved, norm(after[v] - before[v]));
     set_state(after, {});
-    if (p.time_step >= dt_last && moved < tolerance) return set_parameters(before_all);
-    p.time_step = std::min(1.2 * p.time_step, dt_last);
+    if (p.step.time_step >= dt_last && moved < tolerance) return set_parameters(before_all);
+    p.step.time_step = std::min(1.2 * p.step.time_step, dt_last);
   }
   set_parameters(before_all);
   require(false, "at rest after " + std::to_string(limit) + " steps");

@@ -28,8 +28,8 @@ double drop_over_reach(CaseRun& run, BendingModel model, double gamma, Index ele
   strip.length = row * strip.rows;
   const double density = gamma * modulus / (kGravity * std::pow(length, 3));
   auto scene = exact_scene("cantilever");
-  scene->parameters.bending_model = model;
-  scene->parameters.cg_tolerance = 1e-3;  // each step corrects the one before
+  scene->parameters.material.bending = model;
+  scene->parameters.implicit.cg_tolerance = 1e-3;  // each step corrects the one before
   scene->cloths = {strip_cloth(
       strip,
       [](double u, double v) {
@@ -51,9 +51,9 @@ double drop_over_reach(CaseRun& run, BendingModel model, double gamma, Index ele
 double lateral_growth(CaseRun& run, const Strip& strip, const std::vector<Vec3d>& flat, double g) {
   Parameters p = run.parameters();
   const double slow = std::sqrt(strip.length / g);
-  p.gravity_y = -g;
-  p.time_step = 10 * slow;
-  p.newton_iterations = 1;
+  p.gravity.y = -g;
+  p.step.time_step = 10 * slow;
+  p.implicit.newton_iterations = 1;
   run.set_parameters(p);
   run.set_state(flat, {});
   run.relax(slow, 10 * slow, 1e-9 * strip.length, 200);
@@ -77,8 +77,8 @@ double buckling_load(CaseRun& run, BendingModel model, const Strip& strip, doubl
   const double density = 0.2, modulus = 1e-5;
   const double row = strip.row_height(), length = strip.length - 0.5 * row;
   auto scene = exact_scene("lateral buckling");
-  scene->parameters.bending_model = model;
-  scene->parameters.cg_tolerance = 1e-6;
+  scene->parameters.material.bending = model;
+  scene->parameters.implicit.cg_tolerance = 1e-6;
   scene->cloths = {strip_cloth(
       strip,
       [&](double u, double v) {

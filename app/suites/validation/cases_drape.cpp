@@ -92,11 +92,11 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
   scene->name = scene->source = "drape of " + material.name;
   scene->cloths = {ring_cloth(edge, material, specimen)};
   Parameters& p = scene->parameters;
-  p.time_step = 0.02;
-  const double air = p.air_density;
-  p.air_density = 1000;
-  p.thickness = 1e-3;
-  p.offset = 1e-4;
+  p.step.time_step = 0.02;
+  const double air = p.wind.air_density;
+  p.wind.air_density = 1000;
+  p.proximity.thickness = 1e-3;
+  p.impact_zones.offset = 1e-4;
   run.start(scene);
   const auto coefficient = [&] {
     const double disc = kPi * kDisc * kDisc, whole = kPi * kSpecimen * kSpecimen;
@@ -104,7 +104,7 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
   };
   run.steps(75);
   Parameters still = run.parameters();
-  still.air_density = air;
+  still.wind.air_density = air;
   run.set_parameters(still);
   double last = 100, now = 0;
   for (int k = 0; k < 20; ++k) {

@@ -42,11 +42,11 @@ void lay(CaseRun& run, const Patch& patch) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "patch on a plane";
   Parameters& p = scene->parameters;
-  p.air_density = 0;
-  p.thickness = kThickness;
-  p.offset = 0.1 * kThickness;
-  p.time_step = patch.dt;
-  p.friction_obstacle = p.friction_cloth = patch.friction;
+  p.wind.air_density = 0;
+  p.proximity.thickness = kThickness;
+  p.impact_zones.offset = 0.1 * kThickness;
+  p.step.time_step = patch.dt;
+  p.proximity.friction_obstacle = p.proximity.friction_cloth = patch.friction;
   const Strip strip{0.1, patch.rows, std::max<Index>(1, patch.rows * 9 / 10)};
   // Not along the edges of the ground, so that pairs change while it slides.
   const double turn = 0.2, c = std::cos(turn), s = std::sin(turn);
@@ -73,8 +73,8 @@ void lay(CaseRun& run, const Patch& patch) {
 void incline(CaseRun& run, double tangent) {
   Parameters p = run.parameters();
   const double angle = std::atan(tangent);
-  p.gravity_x = kGravity * std::sin(angle);
-  p.gravity_y = -kGravity * std::cos(angle);
+  p.gravity.x = kGravity * std::sin(angle);
+  p.gravity.y = -kGravity * std::cos(angle);
   run.set_parameters(p);
 }
 

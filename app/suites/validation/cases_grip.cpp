@@ -22,21 +22,22 @@ std::shared_ptr<Scene> pressed_strip(const Strip& strip, double last_shortening)
   const double modulus = 1e-5, row = strip.row_height(), length = strip.length - 0.5 * row;
   auto scene = exact_scene("pressed strip");
   Parameters& p = scene->parameters;
-  p.proximity_enabled = true;
-  p.max_substep_levels = 6;
-  p.contact_passes = 20;
-  p.cg_tolerance = 1e-5;
-  p.thickness = 5e-4;
-  p.offset = 5e-5;
-  p.friction_obstacle = 1;
-  p.gravity_y = 0;
+  p.proximity.enabled = true;
+  p.step.max_substep_levels = 6;
+  p.implicit.contact_passes = 20;
+  p.implicit.cg_tolerance = 1e-5;
+  p.proximity.thickness = 5e-4;
+  p.impact_zones.offset = 5e-5;
+  p.proximity.friction_obstacle = 1;
+  p.gravity.y = 0;
   const PressedElastica start = pressed_elastica(kFirstShortening);
   scene->cloths = {strip_cloth(
       strip,
       [&](double u, double v) {
         const double s = (v - 0.5 * row) / length;
         const auto [across, along] = s < 0 ? std::array{0.0, s} : pressed_point(start, s);
-        return Vec3d{length * across, length * (1 - kFirstShortening - along) + p.thickness, u};
+        return Vec3d{length * across,
+                     length * (1 - kFirstShortening - along) + p.proximity.thickness, u};
       },
       plain_fabric(1000, 0, 0.02, modulus))};
   pin_row(scene->cloths[0], strip, 0);
@@ -60,7 +61,7 @@ double first_slip(CaseRun& run, double friction, double last_shortening) {
       0.5 * (row_mean(strip, run.positions(), 0).y + row_mean(strip, run.positions(), 1).y);
   run.steps(20);
   Parameters p = run.parameters();
-  p.friction_obstacle = friction;
+  p.proximity.friction_obstacle = friction;
   run.set_parameters(p);
   run.steps(16);
   const double stuck = row_mean(strip, run.positions(), strip.rows).x;
@@ -107,12 +108,12 @@ std::shared_ptr<Scene> belt_scene(const Strip& strip, double light_leg) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "belt";
   Parameters& p = scene->parameters;
-  p.air_density = 0;
-  p.thickness = kBeltThickness;
-  p.offset = 0.1 * kBeltThickness;
-  p.time_step = 0.005;
-  p.contact_passes = 20;
-  p.friction_obstacle = 2;  // until it hangs at rest
+  p.wind.air_density = 0;
+  p.proximity.thickness = kBeltThickness;
+  p.impact_zones.offset = 0.1 * kBeltThickness;
+  p.step.time_step = 0.005;
+  p.implicit.contact_passes = 20;
+  p.proximity.friction_obstacle = 2;  // until it hangs at rest
   const double arc = kPi * kBelt;
   scene->cloths = {strip_cloth(
       strip,
@@ -145,14 +146,14 @@ double light_leg_now(CaseRun& run, const Strip& strip) {
 double sliding_friction(CaseRun& run, const Strip& strip, double expected) {
   Parameters p = run.parameters();
   for (double share = 1.05; share > 0.85; share -= 0.005) {
-    p.friction_obstacle = share * expected;
+    p.proximity.friction_obstacle = share * expected;
     run.set_parameters(p);
     if (share == 1.05) run.steps(40);
     const double before = light_leg_now(run, strip);
     run.steps(20);
     if (before - light_leg_now(run, strip) > 5e-5) break;
   }
-  return p.friction_obstacle;
+  return p.proximity.friction_obstacle;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr double kGravity = 9.81, kPi = std::numbers::pi;
 double measured_frequency(CaseRun& run, const Cloth& cloth,
                           const std::function<double(std::size_t)>& shape, double expected) {
   Parameters p = run.parameters();
-  p.time_step = 0.1 / expected;
+  p.step.time_step = 0.1 / expected;
   run.set_parameters(p);
   std::vector<Vec3d> x = run.positions();
   const std::vector<double> mass = lumped_mass(cloth);
@@ -43,7 +43,7 @@ double measured_frequency(CaseRun& run, const Cloth& cloth,
     turned -= std::arg(now / last);
     last = now;
   }
-  return std::tan(turned / kSteps) / p.time_step;
+  return std::tan(turned / kSteps) / p.step.time_step;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ void string_frequencies(CaseRun& run) {
   const Strip strip{1, 40, 1};
   const double stretch = 1.05, tensile = 100, density = 0.2;
   auto scene = exact_scene("string frequencies");
-  scene->parameters.gravity_y = 0;
+  scene->parameters.gravity.y = 0;
   scene->cloths = {strip_cloth(
       strip,
       [&](double u, double v) {

@@ -48,8 +48,8 @@ Tip one_free_vertex(const Material& material) {
 /// Euler divides by 1 + iω dt in every step.
 void follow(CaseRun& run, const Tip& tip, const char* what, Vec3d direction, double omega) {
   auto scene = exact_scene("oscillator");
-  scene->parameters.gravity_y = 0;
-  scene->parameters.time_step = 0.2 / omega;
+  scene->parameters.gravity.y = 0;
+  scene->parameters.step.time_step = 0.2 / omega;
   scene->cloths = {tip.cloth};
   run.start(scene);
   std::vector<Vec3d> x = run.positions();
@@ -62,7 +62,7 @@ void follow(CaseRun& run, const Tip& tip, const char* what, Vec3d direction, dou
   const Snapshot state = run.simulator().snapshot();
   const Complex z(dot(state.positions[0] - rest, direction) / way,
                   dot(state.velocities[0], direction) / (omega * way));
-  const double dt = scene->parameters.time_step, turned = count * std::atan(omega * dt);
+  const double dt = scene->parameters.step.time_step, turned = count * std::atan(omega * dt);
   const double off = std::arg(z * std::polar(1.0, turned));  // z turns clockwise
   run.compare(std::string(what) + ": amplitude ratio", 1 / std::sqrt(1 + std::pow(omega * dt, 2)),
               std::pow(std::abs(z), 1.0 / count), 1e-5);
@@ -97,8 +97,8 @@ void errors_of_steps(CaseRun& run, Integrator integrator, double error[3]) {
       plain_fabric(5, 0.25, 0.2, 2e-5));
   const auto end_state = [&](double dt) {
     auto scene = exact_scene("order in dt");
-    scene->parameters.time_step = dt;
-    scene->parameters.integrator = integrator;
+    scene->parameters.step.time_step = dt;
+    scene->parameters.implicit.integrator = integrator;
     scene->cloths = {sheet};
     pin_row(scene->cloths[0], strip, 0);
     run.start(scene);
@@ -124,7 +124,7 @@ void errors_of_steps(CaseRun& run, Integrator integrator, double error[3]) {
 void free_fall(CaseRun& run) {
   const Vec3d thrown{1, 2, -0.5}, g{0.5, -9.81, 0.25};
   auto scene = exact_scene("free fall");
-  scene->parameters.gravity_x = g.x, scene->parameters.gravity_z = g.z;
+  scene->parameters.gravity.x = g.x, scene->parameters.gravity.z = g.z;
   scene->cloths = {small_sheet(1e-5)};
   run.start(scene);
   const std::vector<Vec3d> start = run.positions();
@@ -132,7 +132,7 @@ void free_fall(CaseRun& run) {
   const int count = 20;
   run.steps(count);
   const Snapshot state = run.simulator().snapshot();
-  const double dt = scene->parameters.time_step, t = count * dt;
+  const double dt = scene->parameters.step.time_step, t = count * dt;
   const Vec3d way = t * thrown + (0.5 * t * (t + dt)) * g, speed = thrown + t * g;
   double way_error = 0, speed_error = 0;
   for (std::size_t i = 0; i < start.size(); ++i) {
@@ -166,7 +166,7 @@ void oscillator(CaseRun& run) {
 /// momentum itself, Σ x × m v, is kept to first order in dt only, as with any backward Euler.)
 void momentum(CaseRun& run) {
   auto scene = exact_scene("momentum");
-  scene->parameters.gravity_y = 0;
+  scene->parameters.gravity.y = 0;
   scene->cloths = {small_sheet(1e-5)};
   run.start(scene);
   const std::vector<double> mass = lumped_mass(scene->cloths[0]);
@@ -201,8 +201,8 @@ void momentum(CaseRun& run) {
 void energy(CaseRun& run) {
   for (const double dt : {0.002, 0.01, 0.03}) {
     auto scene = exact_scene("energy");
-    scene->parameters.gravity_y = 0;
-    scene->parameters.time_step = dt;
+    scene->parameters.gravity.y = 0;
+    scene->parameters.step.time_step = dt;
     scene->cloths = {small_sheet(1e-5)};
     run.start(scene);
     std::vector<Vec3d> x, v;

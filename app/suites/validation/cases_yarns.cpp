@@ -16,7 +16,7 @@ constexpr double kModulus = 1.6e-5, kTensile = 400, kShear = kTensile / 2;
 std::vector<Vec3d> left_at_rest(CaseRun& run, const Strip& strip, const Material& material,
                                 const std::function<Vec3d(double, double)>& place) {
   auto scene = exact_scene("friction of yarns");
-  scene->parameters.gravity_y = 0;
+  scene->parameters.gravity.y = 0;
   scene->cloths = {strip_cloth(strip, place, material)};
   run.start(scene);
   run.relax(2e-3, 1, 1e-9, 2000);

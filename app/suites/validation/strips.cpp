@@ -27,14 +27,14 @@ std::shared_ptr<Scene> exact_scene(const char* name) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = name;
   Parameters& p = scene->parameters;
-  p.air_density = 0;
-  p.proximity_enabled = false;
-  p.cg_tolerance = 1e-10;
-  p.cg_max_iterations = 20000;
-  p.newton_iterations = 20;
-  p.newton_tolerance = 1e-10;
-  p.max_travel = 1e9;
-  p.max_substep_levels = 0;
+  p.wind.air_density = 0;
+  p.proximity.enabled = false;
+  p.implicit.cg_tolerance = 1e-10;
+  p.implicit.cg_max_iterations = 20000;
+  p.implicit.newton_iterations = 20;
+  p.implicit.newton_tolerance = 1e-10;
+  p.step.max_travel = 1e9;
+  p.step.max_substep_levels = 0;
   return scene;
 }
 

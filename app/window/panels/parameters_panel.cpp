@@ -69,7 +69,7 @@ bool edit_number(const ParameterInfo& info, double& value) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   std::string format = info.unit.empty() ? "" : " " + shown(info.unit);
-  if (std::holds_alternative<int Parameters::*>(info.member)) {
+  if (info.field.kind == ParameterInfo::Kind::whole) {
     format = "%d" + format;
     int whole = static_cast<int>(value);
     const bool moved = ImGui::SliderInt("##value", &whole, static_cast<int>(info.minimum),
@@ -110,11 +110,11 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   double value = edits.value(info);
   bool moved = false;
   ImGui::BeginDisabled(!parameter_used(edits.values(), info));
-  if (std::holds_alternative<bool Parameters::*>(info.member)) {
+  if (info.field.kind == ParameterInfo::Kind::boolean) {
     bool on = value != 0;
     moved = ImGui::Checkbox("##value", &on);
     value = on;
-  } else if (const auto choices = parameter_choices(info); !choices.empty()) {
+  } else if (const auto choices = info.field.choices; !choices.empty()) {
     moved = edit_choice(choices, value);
   } else {
     moved = edit_number(info, value);

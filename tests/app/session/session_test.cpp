@@ -194,7 +194,7 @@ TEST(session, resets_and_keeps_the_parameters) {
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
   EXPECT_EQ(session->state().step, 0);
   EXPECT_EQ(session->state().history, 0u);
-  EXPECT_DOUBLE_EQ(session->state().parameters.gravity_y, -2);
+  EXPECT_DOUBLE_EQ(session->state().parameters.gravity.y, -2);
   step(*session);
   session->stop();
   const Recording recording = session->recording();
@@ -226,7 +226,7 @@ TEST(session, pauses_on_a_refused_step_and_goes_on_with_a_smaller_one) {
   session->play();
   ASSERT_TRUE(wait_for_step(*session, 4));
   EXPECT_FALSE(session->state().failed);
-  EXPECT_DOUBLE_EQ(session->state().parameters.time_step, 0.005);
+  EXPECT_DOUBLE_EQ(session->state().parameters.step.time_step, 0.005);
   session->stop();
   EXPECT_EQ(replay(session->recording(), {.refuse = 2, .refuse_above = 0.006}),
             session->recording().final_hash);
@@ -339,7 +339,7 @@ TEST(session, refuses_values_out_of_range_with_a_note) {
   session->set("step.time_step", 50);
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
   EXPECT_NE(session->state().note.find("step.time_step"), std::string::npos);
-  EXPECT_DOUBLE_EQ(session->state().parameters.time_step, 0.01);
+  EXPECT_DOUBLE_EQ(session->state().parameters.step.time_step, 0.01);
 }
 
 }  // namespace

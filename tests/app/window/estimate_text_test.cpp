@@ -19,9 +19,9 @@ StepReport some_report() {
 
 Parameters some_parameters() {
   Parameters p;
-  p.gravity_x = p.gravity_z = 0, p.gravity_y = -9.81;
-  p.thickness = 1e-3;
-  p.offset = 1e-4;
+  p.gravity.x = p.gravity.z = 0, p.gravity.y = -9.81;
+  p.proximity.thickness = 1e-3;
+  p.impact_zones.offset = 1e-4;
   return p;
 }
 
@@ -65,7 +65,7 @@ TEST(EstimateText, SaysWhatAStepGotWrong) {
 
 TEST(EstimateText, WithoutGravityThereIsNothingToCompareWith) {
   Parameters p = some_parameters();
-  p.gravity_y = 0;
+  p.gravity.y = 0;
   EXPECT_EQ(value_of(estimates(some_report(), p), "momentum error"), "1e-4 m/s²");
   EXPECT_EQ(estimates_in_short(some_report(), p), "CG 4e-4 · −300 μW · gap 12 %");
 }

@@ -21,7 +21,7 @@ TEST(parameter_edits, clamps_rounds_and_marks) {
   EXPECT_DOUBLE_EQ(edits.value(mu), mu.maximum);
   EXPECT_TRUE(edits.changed(mu));
   edits.set(rounds, 12.4);
-  EXPECT_EQ(edits.values().max_rounds, 12);
+  EXPECT_EQ(edits.values().impact_zones.max_rounds, 12);
   edits.set(mu, std::numeric_limits<double>::quiet_NaN());
   EXPECT_DOUBLE_EQ(edits.value(mu), mu.maximum);
   edits.reset(mu);

@@ -20,7 +20,7 @@ Scene two_sheets_and_a_ball() {
   scene.cloths.push_back(testing::make_sheet(testing::lying(0.2, 90), {0.02, 0.04, 0.01}));
   scene.obstacles.push_back(testing::make_obstacle(make_sphere(0.08, 80), {0, -0.06, 0}));
   scene.obstacles.push_back(testing::make_obstacle(make_sphere(0.03, 20), {0, 0, 0}));
-  scene.parameters.thickness = 4e-3;
+  scene.parameters.proximity.thickness = 4e-3;
   return scene;
 }
 
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(All, BroadPhaseMethods,
 TEST_P(BroadPhaseMethods, CoverPredictedPathsAndTheThickness) {
   std::mt19937 random(1);
   Stage stage(two_sheets_and_a_ball());
-  stage.parameters.broad_phase_method = GetParam();
+  stage.parameters.broad_phase.method = GetParam();
   BroadPhase broad_phase;
   for (int trial = 0; trial < 20; ++trial) {  // trees are refitted and rebuilt on the way
     stage.start = sum(stage.start, random_vectors(stage, random, 0.004f, false));
@@ -108,7 +108,7 @@ TEST_P(BroadPhaseMethods, CoverPredictedPathsAndTheThickness) {
     std::vector<Vec3r> end = sum(stage.start, velocity, step.dt);
     for (Index i = 0; i < stage.world.cloth_vertices; ++i)
       end[static_cast<std::size_t>(i)] += step.dt * step.dt * step.gravity();
-    expect_complete(broad_phase, stage, end, stage.parameters.thickness);
+    expect_complete(broad_phase, stage, end, stage.parameters.proximity.thickness);
     expect_valid(broad_phase, stage);
   }
 }
@@ -116,7 +116,7 @@ TEST_P(BroadPhaseMethods, CoverPredictedPathsAndTheThickness) {
 TEST_P(BroadPhaseMethods, CoverTheCandidateWhereverItGoes) {
   std::mt19937 random(2);
   Stage stage(two_sheets_and_a_ball());
-  stage.parameters.broad_phase_method = GetParam();
+  stage.parameters.broad_phase.method = GetParam();
   BroadPhase broad_phase;
   StepContext step = stage.context();
   broad_phase.prepare(step);
@@ -147,7 +147,7 @@ std::vector<std::uint64_t> dirty_keys(const Stage& stage, const std::vector<std:
 TEST_P(BroadPhaseMethods, FindThePairsOfDirtyVertices) {
   std::mt19937 random(4);
   Stage stage(two_sheets_and_a_ball());
-  stage.parameters.broad_phase_method = GetParam();
+  stage.parameters.broad_phase.method = GetParam();
   StepContext step = stage.context();
   BroadPhase broad_phase;
   broad_phase.prepare(step);
@@ -172,7 +172,7 @@ TEST_P(BroadPhaseMethods, FindThePairsOfDirtyVertices) {
   }
   // The lists of dirty pairs are no longer complete: the next step makes them anew.
   broad_phase.prepare(step);
-  expect_complete(broad_phase, stage, stage.start, stage.parameters.thickness);
+  expect_complete(broad_phase, stage, stage.start, stage.parameters.proximity.thickness);
 }
 
 TEST(BroadPhase, KeepsTheListsWhileTheMotionStaysInTheBoxes) {

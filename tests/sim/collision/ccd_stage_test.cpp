@@ -44,7 +44,7 @@ std::vector<std::uint64_t> brute_force(const Stage& stage, const std::vector<Vec
     }
     CcdHit hit;
     const double separation =
-        0.25 * static_cast<double>(static_cast<Real>(stage.parameters.offset));
+        0.25 * static_cast<double>(static_cast<Real>(stage.parameters.impact_zones.offset));
     if (movable && (edge_edge ? ccd_ee(q, separation, hit) : ccd_vf(q, separation, hit)))
       out.push_back(pair_key(edge_edge, pair));
   });

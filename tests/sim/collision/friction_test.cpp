@@ -30,9 +30,9 @@ Scene stack(const std::array<std::optional<double>, 6>& friction) {
         testing::make_obstacle(make_box({0.07, 0.02, 0.06}, 0.02), {0.004, y, 0.003}));
     scene.obstacles.back().friction = friction[y < 0 ? 0 : 5];
   }
-  scene.parameters.thickness = 1.5e-3;
-  scene.parameters.friction_cloth = 0.5;
-  scene.parameters.friction_obstacle = 0.25;
+  scene.parameters.proximity.thickness = 1.5e-3;
+  scene.parameters.proximity.friction_cloth = 0.5;
+  scene.parameters.proximity.friction_obstacle = 0.25;
   return scene;
 }
 

@@ -106,13 +106,14 @@ INSTANTIATE_TEST_SUITE_P(All, ImpactZoneSolvers,
 
 TEST_P(ImpactZoneSolvers, OpenEveryConstraint) {
   Crossing c(true);
-  c.stage.parameters.zone_solver = GetParam();
+  c.stage.parameters.impact_zones.solver = GetParam();
   c.find();
   const std::vector<Impact> impacts = c.ccd.impacts().download();
   ASSERT_GT(impacts.size(), 200u);
   c.solve();
   const std::vector<Vec3r> x1 = c.stage.state.x1.download();
-  for (const Impact& impact : impacts) EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.offset);
+  for (const Impact& impact : impacts)
+    EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.impact_zones.offset);
 }
 
 TEST(ImpactZones, AreTheConnectedComponents) {
@@ -153,7 +154,7 @@ TEST(ImpactZones, MoveOnlyVerticesWithImpacts) {
 
 TEST_P(ImpactZoneSolvers, KeepTheMomentumOfZonesWithoutObstacles) {
   Crossing c(false);
-  c.stage.parameters.zone_solver = GetParam();
+  c.stage.parameters.impact_zones.solver = GetParam();
   c.find();
   const std::vector<Index> zone = union_find(c.stage, c.ccd.impacts().download());
   c.solve();
@@ -172,10 +173,10 @@ TEST_P(ImpactZoneSolvers, KeepTheMomentumOfZonesWithoutObstacles) {
 
 TEST_P(ImpactZoneSolvers, EndTheRoundsWithoutImpacts) {
   Crossing c(true);
-  c.stage.parameters.zone_solver = GetParam();
+  c.stage.parameters.impact_zones.solver = GetParam();
   c.find();
   int round = 0;
-  for (; round < c.stage.parameters.max_rounds && !c.ccd.impacts().empty(); ++round) {
+  for (; round < c.stage.parameters.impact_zones.max_rounds && !c.ccd.impacts().empty(); ++round) {
     c.solve();
     c.find(true);
   }
@@ -193,7 +194,7 @@ std::vector<Vec3r> solve_large_zone(ZoneSolver solver, int threads, Index& large
   for (int sheet = 0; sheet < 2; ++sheet)
     scene.cloths.push_back(testing::make_sheet(testing::lying(0.5, 2400), {0, 0.004 * sheet, 0}));
   Stage stage(scene);
-  stage.parameters.zone_solver = solver;
+  stage.parameters.impact_zones.solver = solver;
   std::vector<Vec3r> end = stage.start;
   for (Index i = 0; i < stage.world.cloth_vertices; ++i)
     end[at(i)].y += stage.world.object[at(i)] == 1 ? Real(-0.004) : Real(0.004);
@@ -211,7 +212,7 @@ std::vector<Vec3r> solve_large_zone(ZoneSolver solver, int threads, Index& large
   const std::vector<Vec3r> x1 = stage.state.x1.download();
   smallest_gap = 1;
   for (const Impact& impact : ccd.impacts().download())
-    smallest_gap = std::min(smallest_gap, gap(impact, x1) / stage.parameters.offset);
+    smallest_gap = std::min(smallest_gap, gap(impact, x1) / stage.parameters.impact_zones.offset);
   return x1;
 }
 
@@ -227,7 +228,7 @@ TEST_P(ImpactZoneSolvers, GiveLargeZonesToAllThreads) {
 std::vector<Vec3r> result_with_threads(ZoneSolver solver, int threads) {
   set_thread_count(threads);
   Crossing c(true);
-  c.stage.parameters.zone_solver = solver;
+  c.stage.parameters.impact_zones.solver = solver;
   c.find();
   for (int round = 0; round < 3; ++round) {
     c.solve();
@@ -241,9 +242,9 @@ std::vector<Vec3r> result_with_threads(ZoneSolver solver, int threads) {
 TEST_P(ImpactZoneSolvers, LeaveNothingToAFullDetection) {
   for (const BroadPhaseMethod method : {BroadPhaseMethod::tree, BroadPhaseMethod::hash}) {
     Crossing c(true, Real(0.006));
-    c.stage.parameters.zone_solver = GetParam();
-    c.stage.parameters.broad_phase_method = method;
-    c.stage.parameters.zone_iterations = 2;  // leaves work for more rounds
+    c.stage.parameters.impact_zones.solver = GetParam();
+    c.stage.parameters.broad_phase.method = method;
+    c.stage.parameters.impact_zones.iterations = 2;  // leaves work for more rounds
     c.find();
     int round = 0;
     for (; round < 10 && !c.ccd.impacts().empty(); ++round) {
@@ -273,14 +274,15 @@ TEST_P(ImpactZoneSolvers, GiveTheSameBitsWithAnyNumberOfThreads) {
 
 TEST(ImpactZones, PlainGradientStepsReachTheConstraintsToo) {
   Crossing c(true, Real(0.003));
-  c.stage.parameters.zone_solver = ZoneSolver::augmented_lagrangian;
-  c.stage.parameters.chebyshev = false;
-  c.stage.parameters.zone_iterations = 2000;
+  c.stage.parameters.impact_zones.solver = ZoneSolver::augmented_lagrangian;
+  c.stage.parameters.impact_zones.chebyshev = false;
+  c.stage.parameters.impact_zones.iterations = 2000;
   c.find();
   const std::vector<Impact> impacts = c.ccd.impacts().download();
   c.solve();
   const std::vector<Vec3r> x1 = c.stage.state.x1.download();
-  for (const Impact& impact : impacts) EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.offset);
+  for (const Impact& impact : impacts)
+    EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.impact_zones.offset);
 }
 
 /// Sheets that pass through each other: the dual solver ends at the optimum, the paper's comes near
@@ -291,10 +293,11 @@ TEST(ImpactZones, DualSolverFindsTheOptimum) {
     const ZoneTrial dual = solve_zone_trial(side, ZoneSolver::dual, 100);
     const ZoneTrial paper = solve_zone_trial(side, ZoneSolver::augmented_lagrangian, 100);
     const Parameters defaults;
-    EXPECT_LE(dual.violation, 0.2 * defaults.offset);
-    EXPECT_LT(paper.violation, defaults.offset) << "no penetration, but not converged either";
+    EXPECT_LE(dual.violation, 0.2 * defaults.impact_zones.offset);
+    EXPECT_LT(paper.violation, defaults.impact_zones.offset)
+        << "no penetration, but not converged either";
     for (const ZoneTrial& trial : {dual, paper}) EXPECT_LT(trial.momentum, 1e-4);
-    EXPECT_LE(dual.complementarity, 0.2 * defaults.offset);
+    EXPECT_LE(dual.complementarity, 0.2 * defaults.impact_zones.offset);
     EXPECT_NEAR(dual.objective, optimum, 0.01 * optimum) << side;
     EXPECT_GT(paper.objective, 0.99 * optimum);
     EXPECT_LT(paper.objective, 1.5 * optimum);

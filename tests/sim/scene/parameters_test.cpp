@@ -68,19 +68,19 @@ TEST(Parameters, DefaultsLieInTheirRanges) {
 TEST(Parameters, SetByNameAndAlias) {
   Parameters parameters;
   set_parameter(parameters, "step.time_step", "0.005");
-  EXPECT_EQ(parameters.time_step, 0.005);
+  EXPECT_EQ(parameters.step.time_step, 0.005);
   set_parameter(parameters, "time_step", "1e-2");
-  EXPECT_EQ(parameters.time_step, 0.01);
+  EXPECT_EQ(parameters.step.time_step, 0.01);
   set_parameter(parameters, "mu", "500");
-  EXPECT_EQ(parameters.penalty, 500);
+  EXPECT_EQ(parameters.impact_zones.penalty, 500);
   set_parameter(parameters, "rho", "0.9");
-  EXPECT_EQ(parameters.rho, 0.9);
+  EXPECT_EQ(parameters.impact_zones.rho, 0.9);
   set_parameter(parameters, "impact_zones.chebyshev", "off");
-  EXPECT_FALSE(parameters.chebyshev);
+  EXPECT_FALSE(parameters.impact_zones.chebyshev);
   set_parameter(parameters, "impact_zones.chebyshev", "1");
-  EXPECT_TRUE(parameters.chebyshev);
+  EXPECT_TRUE(parameters.impact_zones.chebyshev);
   set_parameter(parameters, "implicit.cg_max_iterations", "77");
-  EXPECT_EQ(parameters.cg_max_iterations, 77);
+  EXPECT_EQ(parameters.implicit.cg_max_iterations, 77);
 }
 
 TEST(Parameters, RefusesBadValuesWithOneLine) {
@@ -119,15 +119,15 @@ TEST(Parameters, UnknownKeyNamesTheNearest) {
 TEST(Parameters, ValueIsKeptWhenRefused) {
   Parameters parameters;
   EXPECT_THROW(set_parameter(parameters, "time_step", "7"), InputError);
-  EXPECT_EQ(parameters.time_step, Parameters{}.time_step);
+  EXPECT_EQ(parameters.step.time_step, Parameters{}.step.time_step);
 }
 
 TEST(Parameters, DumpReadsBack) {
   Parameters parameters;
-  parameters.time_step = 0.1 / 3;
-  parameters.max_rounds = 7;
-  parameters.chebyshev = false;
-  parameters.zone_solver = ZoneSolver::linear;
+  parameters.step.time_step = 0.1 / 3;
+  parameters.impact_zones.max_rounds = 7;
+  parameters.impact_zones.chebyshev = false;
+  parameters.impact_zones.solver = ZoneSolver::linear;
   const auto json = nlohmann::json::parse(dump_parameters(parameters));
   EXPECT_EQ(json.size(), parameter_table().size());
   Parameters copy;
@@ -140,7 +140,7 @@ TEST(Parameters, DumpReadsBack) {
 TEST(Parameters, ChoicesAreGivenByName) {
   Parameters parameters;
   set_parameter(parameters, "impact_zones.solver", "dual");
-  EXPECT_EQ(parameters.zone_solver, ZoneSolver::dual);
+  EXPECT_EQ(parameters.impact_zones.solver, ZoneSolver::dual);
   const ParameterInfo& penalty = *find_parameter("impact_zones.penalty");
   EXPECT_FALSE(parameter_used(parameters, penalty));
   set_parameter(parameters, "impact_zones.solver", "augmented_lagrangian");

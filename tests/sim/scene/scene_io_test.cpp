@@ -26,17 +26,17 @@ TEST(SceneIo, SettingsAreOverlaidOnTheDefaults) {
   EXPECT_EQ(scene->name, "drop");
   EXPECT_EQ(scene->duration, 0.5);
   const Parameters& p = scene->parameters;
-  EXPECT_EQ(p.wind_x, 0.5);
-  EXPECT_EQ(p.air_drag, 0.1);
-  EXPECT_EQ(p.thickness, 2e-3);
-  EXPECT_EQ(p.friction_cloth, 0.4);
-  EXPECT_EQ(p.friction_obstacle, Parameters{}.friction_obstacle);
+  EXPECT_EQ(p.wind.x, 0.5);
+  EXPECT_EQ(p.wind.air_drag, 0.1);
+  EXPECT_EQ(p.proximity.thickness, 2e-3);
+  EXPECT_EQ(p.proximity.friction_cloth, 0.4);
+  EXPECT_EQ(p.proximity.friction_obstacle, Parameters{}.proximity.friction_obstacle);
 }
 
 TEST(SceneIo, OverridesComeLast) {
   const auto scene = load(kData + "drop.json", {"proximity.thickness=0.003", "time_step=0.002"});
-  EXPECT_EQ(scene->parameters.thickness, 0.003);
-  EXPECT_EQ(scene->parameters.time_step, 0.002);
+  EXPECT_EQ(scene->parameters.proximity.thickness, 0.003);
+  EXPECT_EQ(scene->parameters.step.time_step, 0.002);
 }
 
 TEST(SceneIo, ObjectsGrabsAndCameras) {
@@ -139,10 +139,10 @@ TEST(SceneIo, TrianglesOverrideRescalesAllGridsAndTheThickness) {
   std::size_t faces = 0;
   for (const Cloth& cloth : scene->cloths) faces += cloth.mesh.faces.size();
   EXPECT_NEAR(static_cast<double>(faces), 3e6, 3e4);
-  EXPECT_LT(scene->parameters.thickness, 0.3 * 0.0016);
-  EXPECT_LT(scene->parameters.offset, 0.05 * 0.0016);
+  EXPECT_LT(scene->parameters.proximity.thickness, 0.3 * 0.0016);
+  EXPECT_LT(scene->parameters.impact_zones.offset, 0.05 * 0.0016);
   const auto own = load("sphere", {"triangles=3000000", "proximity.thickness=0.001"});
-  EXPECT_EQ(own->parameters.thickness, 0.001);
+  EXPECT_EQ(own->parameters.proximity.thickness, 0.001);
 }
 
 TEST(SceneIo, BuiltInScenesStartWithoutIntersections) {
@@ -153,7 +153,7 @@ TEST(SceneIo, BuiltInScenesStartWithoutIntersections) {
     EXPECT_EQ(scene->source, name);
   }
   const auto sphere = load("sphere");
-  EXPECT_EQ(sphere->parameters.time_step, 1.0 / 200);
+  EXPECT_EQ(sphere->parameters.step.time_step, 1.0 / 200);
   std::size_t faces = 0;
   for (const Cloth& cloth : sphere->cloths) faces += cloth.mesh.faces.size();
   EXPECT_NEAR(static_cast<double>(faces), 200000, 2000);
