@@ -36,18 +36,18 @@ TEST(Parameters, TableCoversEveryMemberOnce) {
   std::size_t bytes = 0;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
-    std::visit(
-        [&](auto member) {
-          Parameters parameters;
-          auto before = parameters.*member;
-          parameters.*member = static_cast<decltype(before)>(before == decltype(before){} ? 1 : 0);
-          int changed = 0;
-          for (const ParameterInfo& other : parameter_table())
-            changed += get_parameter(parameters, other) != get_parameter(Parameters{}, other);
-          EXPECT_EQ(changed, 1) << info.name;
-          bytes += sizeof before;
-        },
-        info.member);
+    using Kind = ParameterInfo::Kind;
+    Parameters parameters;
+    info.field.set(parameters, get_parameter(parameters, info) == 0 ? 1 : 0);
+    int changed = 0;
+    for (const ParameterInfo& other : parameter_table())
+      changed += get_parameter(parameters, other) != get_parameter(Parameters{}, other);
+    EXPECT_EQ(changed, 1) << info.name;
+    const Kind kind = info.field.kind;
+    bytes += kind == Kind::number    ? sizeof(double)
+             : kind == Kind::boolean ? sizeof(bool)
+                                     : sizeof(int);
+    EXPECT_EQ(info.field.choices.empty(), kind != Kind::choice) << info.name;
   }
   EXPECT_GE(names.size(), 33u);
   EXPECT_LE(bytes, sizeof(Parameters));
