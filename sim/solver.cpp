@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "kernels/hand_out.h"
+#include "kernels/copy_to_device.h"
 #include "kernels/parallel/device.h"
 #include "kernels/parallel/parallel.h"
 #include "sim/mechanics/energy.h"
@@ -296,7 +296,7 @@ void Solver::positions(std::vector<Vec3f>& out) const {
 
 void Solver::positions_on_device(std::unique_ptr<DevicePositions>& slot) const {
   use_device();
-  hand_out(state_.x1.view(), slot);
+  copy_to_device(state_.x1.view(), slot);
 }
 
 Snapshot Solver::snapshot() const {

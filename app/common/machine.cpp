@@ -11,7 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "kernels/parallel/over_ranges.h"
+#include "kernels/parallel/parallel_for.h"
 #include "sim/cuda_devices.h"
 
 namespace icloth {
@@ -60,7 +60,7 @@ double measure_memory_bandwidth() {
   double best = 0;
   for (int run = 0; run < 6; ++run) {  // the first one brings in the pages
     const auto start = std::chrono::steady_clock::now();
-    over_ranges(Index{count / block}, 2, 1, [&](Index first, Index last) {
+    parallel_for(Index{count / block}, 2, 1, [&](Index first, Index last) {
       for (std::size_t i = block * static_cast<std::size_t>(first);
            i < block * static_cast<std::size_t>(last); ++i)
         a[i] = b[i] + 3.0 * c[i];

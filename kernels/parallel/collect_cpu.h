@@ -96,7 +96,7 @@ Index collect(const char* name, Index n, const F& f, Array<T>& out) {
   pool.reset();
   const Index count = detail::chunk_count(n, detail::kCollectChunk);
   const auto chunks = detail::scratch<detail::ChunkOutput<T>, 4>(count);
-  over_ranges(count, 2, 1, [&](Index begin, Index end) {
+  parallel_for(count, 2, 1, [&](Index begin, Index end) {
     const typename detail::BufferPool<T>::Lease buffer(pool);
     for (Index c = begin; c < end; ++c) {
       const Index first = c * detail::kCollectChunk;
@@ -114,7 +114,7 @@ Index collect(const char* name, Index n, const F& f, Array<T>& out) {
   out.resize(static_cast<Index>(total));
   T* const result = out.view().data();
   // Copying one chunk is little work, hence the large grain.
-  over_ranges(count, 1024, 256, [&](Index begin, Index end) {
+  parallel_for(count, 1024, 256, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c) {
       const detail::ChunkOutput<T>& chunk = chunks[c];
       std::copy_n(chunk.buffer->data() + chunk.first, chunk.count, result + chunk.start);

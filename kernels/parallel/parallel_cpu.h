@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/parallel/over_ranges.h"
+#include "kernels/parallel/parallel_for.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
@@ -38,7 +38,7 @@ inline Index chunk_count(Index n, Index chunk) { return n / chunk + (n % chunk !
 template <class Body>
 void over_chunks(Index n, Index chunk, const Body& body) {
   const Index chunks = chunk_count(n, chunk);
-  over_ranges(chunks, 2, 1, [&](Index begin, Index end) {
+  parallel_for(chunks, 2, 1, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c) {
       const Index first = c * chunk;
       body(c, first, first + std::min(chunk, n - first));
@@ -72,7 +72,7 @@ T reduce_chunk(Index first, Index last, T identity, const F& shared_f, const Op&
 /// `for_each` without a row in the profile.
 template <class F>
 void for_each_index(Index n, const F& f) {
-  over_ranges(n, kForEachSerialBelow, kForEachGrain, [&f](Index first, Index last) {
+  parallel_for(n, kForEachSerialBelow, kForEachGrain, [&f](Index first, Index last) {
     const F local = f;
     for (Index i = first; i < last; ++i) local(i);
   });
@@ -159,7 +159,7 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
 template <class F>
 void for_each_team(const char* name, Index teams, const F& f) {
   const ProfileScope scope(name);
-  over_ranges(teams, 2, 1, [&f](Index first, Index last) {
+  parallel_for(teams, 2, 1, [&f](Index first, Index last) {
     for (Index t = first; t < last; ++t) {
       Team team;
       f(team, t);

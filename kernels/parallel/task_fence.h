@@ -12,7 +12,7 @@ extern "C" void __tsan_release(void* address);
 /// at the end, nor about Mesa's software driver.
 extern "C" __attribute__((used)) inline const char* __tsan_default_suppressions() {
   return "race_top:oneapi/tbb\nrace_top:tbb::detail\nrace_top:bits/atomic_base.h\n"
-         "race_top:operator delete[]\nrace_top:kernels/parallel/over_ranges.h\nthread:libtbb\n"
+         "race_top:operator delete[]\nrace_top:kernels/parallel/parallel_for.h\nthread:libtbb\n"
          "race:swrast_dri.so\n";
 }
 #endif

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "kernels/parallel/over_ranges.h"
+#include "kernels/parallel/parallel_for.h"
 #include "sim/scene/exact_triangles.h"
 
 #if defined(ICLOTH_HAS_CGAL)
@@ -172,7 +172,7 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
       found.push_back({std::min(a, b), std::max(a, b)});
     });
   };
-  over_ranges(static_cast<Index>(faces.size()), 64, 64, [&](Index first, Index last) {
+  parallel_for(static_cast<Index>(faces.size()), 64, 64, [&](Index first, Index last) {
     for (Index a = first; a < last; ++a) test_face(a);
   });
   std::ranges::sort(found, [](const IntersectingFaces& s, const IntersectingFaces& t) {

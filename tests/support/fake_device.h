@@ -20,8 +20,8 @@ struct FakeDevicePositions : DevicePositions {
 };
 
 /// What Simulator::positions_on_device does: the slot's memory is used again.
-inline void fake_hand_out(const std::vector<Vec3f>& positions,
-                          std::unique_ptr<DevicePositions>& slot) {
+inline void fake_copy_to_device(const std::vector<Vec3f>& positions,
+                                std::unique_ptr<DevicePositions>& slot) {
   if (!slot) slot = std::make_unique<FakeDevicePositions>();
   static_cast<FakeDevicePositions&>(*slot).assign(positions);
 }

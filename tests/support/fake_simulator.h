@@ -88,7 +88,7 @@ class FakeSimulator : public Simulator {
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override {
     std::vector<Vec3f> now;
     positions(now);
-    if (options_.on_device) return fake_hand_out(now, slot);
+    if (options_.on_device) return fake_copy_to_device(now, slot);
     slot.reset();
   }
   void positions(std::vector<Vec3f>& out) const override {

@@ -13,7 +13,7 @@ namespace icloth {
 /// body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is small.
 /// Isolated: while this thread waits it must not start other work that would use its scratch.
 template <class Body>
-void over_ranges(Index n, Index serial_below, Index grain, const Body& body) {
+void parallel_for(Index n, Index serial_below, Index grain, const Body& body) {
   if (n <= 0) return;
   if (n < serial_below) return body(Index{0}, n);
   TaskFence fence;

@@ -14,7 +14,7 @@ namespace icloth::ICLOTH_BUILD {
 /// Makes `slot` a copy of `x` in device memory, behind the work that the device already has; the
 /// memory of an earlier call is used again. Builds without a device leave it empty. Never throws
 /// for reasons of the device: DevicePositions::failure says them.
-inline void hand_out(View<const Vec3<Real>> x, std::unique_ptr<DevicePositions>& slot) {
+inline void copy_to_device(View<const Vec3<Real>> x, std::unique_ptr<DevicePositions>& slot) {
 #if defined(__CUDACC__)
   auto* positions = dynamic_cast<CudaPositions*>(slot.get());
   if (positions == nullptr) {
