@@ -33,7 +33,8 @@ struct ZoneResult {
   Index iterations;
   Real violation;        ///< largest δ − n·g, 0 if none [m]
   Real complementarity;  ///< largest of min(λ, n·g − δ), and of −λ [m]
-  Real momentum;         ///< |Σ a (x − x*) − Σ λ n of what cannot move| / Σ a |x − x*|
+  /// |Σ a (x − x*) − Σ λ n of what cannot move| / Σ a |x − x*|: the momentum that is not balanced.
+  Real momentum_residual;
 };
 
 /// Mass and Σ m (x − x*) of some vertices.

@@ -104,7 +104,7 @@ struct ZoneResultAt {
 struct WorseResult {
   ICLOTH_HD ZoneResult operator()(ZoneResult a, ZoneResult b) const {
     return {Max{}(a.iterations, b.iterations), Max{}(a.violation, b.violation),
-            Max{}(a.complementarity, b.complementarity), Max{}(a.momentum, b.momentum)};
+            Max{}(a.complementarity, b.complementarity), Max{}(a.momentum_residual, b.momentum_residual)};
   }
 };
 
@@ -275,7 +275,7 @@ void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
   report.zone_iterations += worst.iterations;
   larger(report.zone_violation, worst.violation);
   larger(report.zone_complementarity, worst.complementarity);
-  larger(report.zone_momentum, worst.momentum);
+  larger(report.zone_momentum_residual, worst.momentum_residual);
 }
 
 void ImpactZones::back_to_candidate(StepContext& step) {

@@ -114,7 +114,7 @@ class Trial {
                     r.iterations,
                     static_cast<double>(r.violation),
                     static_cast<double>(r.complementarity),
-                    static_cast<double>(r.momentum),
+                    static_cast<double>(r.momentum_residual),
                     0,
                     0};
     const std::vector<Vec3r> x = x_.download(), target = target_.download();

@@ -44,7 +44,7 @@ constexpr ReportColumn kColumns[] = {
     {"state_hash", &R::state_hash},
     {"zone_violation", &R::zone_violation},
     {"zone_complementarity", &R::zone_complementarity},
-    {"zone_momentum", &R::zone_momentum},
+    {"zone_momentum_residual", &R::zone_momentum_residual},
     {"box_tests", &R::box_tests},
     {"momentum_error", &R::momentum_error},
     {"energy_balance", &R::energy_balance},

@@ -31,7 +31,7 @@ struct StepReport {
   std::int64_t box_tests = 0;  ///< boxes compared, where broad_phase.count_tests asks for it
   std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0;
   /// How far the worst zone was from an optimum (kernels/zones/zone_problem.h) [m], [m], relative.
-  double zone_violation = 0, zone_complementarity = 0, zone_momentum = 0;
+  double zone_violation = 0, zone_complementarity = 0, zone_momentum_residual = 0;
   std::int64_t dynamic_faces = 0, static_faces = 0;  ///< T_d of the last round, and the other faces
   std::int64_t newton_iterations = 0, cg_iterations = 0;
   double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true

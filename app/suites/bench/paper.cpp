@@ -125,7 +125,7 @@ void compare_zone_solvers(Frames& frames, Report& report) {
       left += static_cast<double>(step.impacts_left);
       strain = std::max(strain, step.max_strain);
       violation = std::max(violation, step.zone_violation / delta);
-      momentum = std::max(momentum, step.zone_momentum);
+      momentum = std::max(momentum, step.zone_momentum_residual);
       series.points.emplace_back(static_cast<double>(state.step + 1), mine);
     }
     const auto n = static_cast<double>(frames.states().size());

@@ -296,7 +296,7 @@ TEST(ImpactZones, DualSolverFindsTheOptimum) {
     EXPECT_LE(dual.violation, 0.2 * defaults.impact_zones.offset);
     EXPECT_LT(paper.violation, defaults.impact_zones.offset)
         << "no penetration, but not converged either";
-    for (const ZoneTrial& trial : {dual, paper}) EXPECT_LT(trial.momentum, 1e-4);
+    for (const ZoneTrial& trial : {dual, paper}) EXPECT_LT(trial.momentum_residual, 1e-4);
     EXPECT_LE(dual.complementarity, 0.2 * defaults.impact_zones.offset);
     EXPECT_NEAR(dual.objective, optimum, 0.01 * optimum) << side;
     EXPECT_GT(paper.objective, 0.99 * optimum);

@@ -29,7 +29,7 @@ TEST(Report, ColumnsStandInTheOrderThatFilesPromise) {
             "newton_iterations cg_iterations cg_residual "
             "kinetic_energy elastic_energy gravity_energy max_strain max_speed min_gap "
             "state_hash "
-            "zone_violation zone_complementarity zone_momentum box_tests "
+            "zone_violation zone_complementarity zone_momentum_residual box_tests "
             "momentum_error energy_balance ");
 }
 
