@@ -86,7 +86,8 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
 
  private:
   using Base::before_, Base::constraints_, Base::direction_, Base::multiplier_, Base::nc_,
-      Base::nv_, Base::set_, Base::shortfall_, Base::target_, Base::team_, Base::trial_, Base::x_;
+      Base::nv_, Base::set_, Base::shortfall_, Base::target_, Base::team_, Base::x_;
+  View<Real> trial_ = Base::scratch1_;  ///< shortfalls at the point that objective() was asked for
 
   ICLOTH_HD void prepare() {
     team_.for_each(nv_, [&](Index i) { direction_[i] = Vec3r{}; });

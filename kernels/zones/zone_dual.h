@@ -46,10 +46,11 @@ class ZoneDual : public ZoneProblem<Team> {
   }
 
  private:
-  using Base::constraints_, Base::direction_, Base::multiplier_, Base::nc_, Base::nv_, Base::scale_,
-      Base::set_, Base::target_, Base::team_, Base::x_;
-  View<Real>& y_ = Base::trial_;
-  View<Real>& projected_ = Base::shortfall_;
+  using Base::constraints_, Base::multiplier_, Base::nc_, Base::nv_, Base::set_, Base::target_,
+      Base::team_, Base::x_;
+  View<Real> y_ = Base::scratch1_;           ///< the extrapolated multipliers y
+  View<Real> bound_ = Base::scratch2_;       ///< L of each constraint
+  View<Real> projected_ = Base::shortfall_;  ///< λ⁺; its memory is free until finish()
 
   struct Step {
     double momentum;  ///< Σ L (y − λ⁺)(λ⁺ − λ)
@@ -63,20 +64,22 @@ class ZoneDual : public ZoneProblem<Team> {
 
   /// Bounds L, and the start from the multipliers of the last round.
   ICLOTH_HD void prepare() {
-    team_.for_each(nv_, [&](Index i) {
-      Real sum = 0;
-      this->for_constraints(i, [&](Index, Real w) { sum += std::fabs(w); });
-      direction_[i].x = sum / static_cast<Real>(this->weight(i));
-    });
     team_.for_each(nc_, [&](Index j) {
       Real bound = 0;
       for (int a = 0; a < 4; ++a) {
         const Index i = this->corner(j, a);
-        if (i >= 0) bound += std::fabs(constraints_[j].s.w[a]) * direction_[i].x;
+        if (i >= 0) bound += std::fabs(constraints_[j].s.w[a]) * influence(i);
       }
-      scale_[j] = bound;
+      bound_[j] = bound;
       y_[j] = multiplier_[j] = std::fmax(multiplier_[j], Real(0));
     });
+  }
+
+  /// Σ |w| / a_i over the constraints of vertex i: how far unit multipliers move it at most.
+  ICLOTH_HD Real influence(Index i) const {
+    Real sum = 0;
+    this->for_constraints(i, [&](Index, Real w) { sum += std::fabs(w); });
+    return sum / static_cast<Real>(this->weight(i));
   }
 
   /// x(λ)
@@ -95,9 +98,9 @@ class ZoneDual : public ZoneProblem<Team> {
         [&](Index j) {
           const Real s = this->shortfall_at(j, [&](Index i) -> const Vec3r& { return x_[i]; });
           const Real y = y_[j];
-          const Real next = scale_[j] > 0 ? std::fmax(y + s / scale_[j], Real(0)) : Real(0);
+          const Real next = bound_[j] > 0 ? std::fmax(y + s / bound_[j], Real(0)) : Real(0);
           projected_[j] = next;
-          const Real change = scale_[j] * (y - next);
+          const Real change = bound_[j] * (y - next);
           return Step{static_cast<double>(change * (next - multiplier_[j])), std::fabs(change)};
         },
         CombineSteps{});

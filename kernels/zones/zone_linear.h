@@ -62,9 +62,9 @@ class ZoneLinear : public ZoneProblem<Team> {
  private:
   using Base::constraints_, Base::direction_, Base::multiplier_, Base::nc_, Base::nv_, Base::set_,
       Base::start_, Base::target_, Base::team_, Base::x_;
-  View<Real>& r_ = Base::shortfall_;
-  View<Real>& p_ = Base::trial_;
-  View<Real>& q_ = Base::scale_;
+  View<Real> r_ = Base::shortfall_;  ///< residual d − J x; its memory is free until finish()
+  View<Real> p_ = Base::scratch1_;   ///< search direction
+  View<Real> q_ = Base::scratch2_;   ///< J a⁻¹ Jᵀ p
 
   struct Norms {
     double square;

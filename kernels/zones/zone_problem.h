@@ -60,8 +60,8 @@ struct ZoneArrays {
   View<Vec3r> x, before, direction;    ///< result; what a solver needs beside it [m] (active)
   View<Real> multiplier;               ///< λ_j: last round's, then the result [m] (constraints)
   View<Real> shortfall;                ///< δ − n·g(x) of the result [m] (constraints)
-  View<Real> trial, scale;             ///< what a solver needs beside them (constraints)
-  View<ZoneResult> result;             ///< (zones)
+  View<Real> scratch1, scratch2;  ///< each solver gives them a meaning of its own (constraints)
+  View<ZoneResult> result;        ///< (zones)
 };
 
 /// One zone's share of the buffers, with vertices and constraints numbered within the zone. What is
@@ -83,8 +83,8 @@ class ZoneProblem {
         mass_(team.borrow(z.mass.sub(first_vertex_, nv_))),
         multiplier_(team.borrow(z.multiplier.sub(first_constraint_, nc_))),
         shortfall_(team.borrow(z.shortfall.sub(first_constraint_, nc_))),
-        trial_(team.borrow(z.trial.sub(first_constraint_, nc_))),
-        scale_(team.borrow(z.scale.sub(first_constraint_, nc_))),
+        scratch1_(team.borrow(z.scratch1.sub(first_constraint_, nc_))),
+        scratch2_(team.borrow(z.scratch2.sub(first_constraint_, nc_))),
         constraints_(team.borrow(z.constraints.sub(first_constraint_, nc_))),
         incidence_first_(z.incidence_first.sub(first_vertex_, nv_ + 1)),
         incidence_(z.incidence),
@@ -164,7 +164,9 @@ class ZoneProblem {
   View<Vec3r> x_, direction_, before_;
   View<const Vec3r> target_;
   View<const Real> mass_;
-  View<Real> multiplier_, shortfall_, trial_, scale_;
+  View<Real> multiplier_;
+  View<Real> shortfall_;            ///< finish() writes it last, so a solver may use it as scratch
+  View<Real> scratch1_, scratch2_;  ///< one number a constraint, for a solver to name
   View<const ZoneConstraint> constraints_;
   View<const Index> incidence_first_, incidence_;
   View<const Vec3r> fixed_, start_;
