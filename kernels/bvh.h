@@ -1,6 +1,6 @@
-// Bounding volume tree with eight children a node, implicit over the elements in Morton order:
+// A bounding volume tree with eight children a node, implicit over the elements in Morton order:
 // node i of a level holds the boxes of nodes 8i … 8i+7 of the level below, and a refit is one
-// parallel pass a level. No pointers, no atomics, the same on every device.
+// parallel pass a level. It has no pointers and no atomics, and is the same on every device.
 #pragma once
 
 #include <cfloat>
@@ -12,7 +12,7 @@ namespace icloth::ICLOTH_BUILD {
 inline constexpr int kTreeWidth = 8;
 inline constexpr int kTreeLevels = 11;  ///< 8¹¹ > 2³¹ elements
 
-/// Box in single precision, rounded outward where it is made.
+/// A box in single precision, rounded outward where it is made.
 struct Box {
   float lo[3] = {FLT_MAX, FLT_MAX, FLT_MAX};
   float hi[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
@@ -25,19 +25,21 @@ ICLOTH_HD inline void include(Box& a, const Box& b) {
   }
 }
 
-/// Smallest box around two points, padded; rounding goes outward.
+/// The smallest box around two points, padded; rounding goes outward.
 ICLOTH_HD inline Box swept_box(Vec3r a, Vec3r b, Real pad) {
   const Real p[3] = {a.x, a.y, a.z}, q[3] = {b.x, b.y, b.z};
   Box box;
   for (int k = 0; k < 3; ++k) {
     const Real low = (p[k] < q[k] ? p[k] : q[k]) - pad, high = (p[k] > q[k] ? p[k] : q[k]) + pad;
-    // Three float roundings at most: 4 ulp outward cover them.
+    // Three float roundings happen at most; 4 ulp outward cover them.
     box.lo[k] = static_cast<float>(low) - 2.4e-7f * std::fabs(static_cast<float>(low)) - FLT_MIN;
     box.hi[k] = static_cast<float>(high) + 2.4e-7f * std::fabs(static_cast<float>(high)) + FLT_MIN;
   }
   return box;
 }
 
+/// The boxes of eight children, stored coordinate by coordinate so that one vector comparison tests
+/// all of them.
 struct TreeNode {
   float lo[3][kTreeWidth], hi[3][kTreeWidth];
 };
@@ -52,6 +54,7 @@ ICLOTH_HD inline void set_child(TreeNode& node, int child, const Box& box) {
   for (int k = 0; k < 3; ++k) node.lo[k][child] = box.lo[k], node.hi[k][child] = box.hi[k];
 }
 
+/// A tree as kernels see it.
 struct TreeView {
   View<const TreeNode> nodes;  ///< all levels, the lowest first
   View<const Index> items;     ///< element of each leaf, in Morton order
@@ -59,8 +62,9 @@ struct TreeView {
   int levels = 0;  ///< 0: empty tree
 };
 
-/// Bit c is set where child c overlaps the box. Whole rows of ints: compilers turn them into
-/// vector comparisons, which a short-circuit per child would prevent.
+/// Compares a box with all children of a node: bit c of the result is set where child c overlaps
+/// it. The loop works on whole rows of ints because compilers turn those into vector comparisons,
+/// which a short-circuit per child would prevent.
 ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& box) {
   int apart[kTreeWidth] = {};
   for (int k = 0; k < 3; ++k) {
@@ -73,19 +77,24 @@ ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& 
   return mask;
 }
 
-/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps. Returns how
-/// many boxes were compared with.
+/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps. Returns the
+/// number of boxes that were compared with.
 template <class Found>
 ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_leaf,
                            const Found& found) {
   if (tree.levels == 0) return 0;
   Index tests = 0;
+
+  // The traversal is depth first with a stack of its own. A level leaves at most kTreeWidth − 1
+  // siblings waiting, which bounds the stack.
   struct Entry {
     int level;
     Index node;
   } stack[kTreeLevels * (kTreeWidth - 1) + 1];
   int depth = 0;
   stack[depth++] = {tree.levels - 1, 0};
+
+  // Each node on the stack tests all of its children at once.
   while (depth > 0) {
     const Entry top = stack[--depth];
     tests += kTreeWidth;
@@ -94,6 +103,9 @@ ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_lea
     for (int c = 0; mask != 0; ++c, mask >>= 1) {
       if ((mask & 1u) == 0) continue;
       const Index child = top.node * kTreeWidth + c;
+
+      // Leaves are reported, and inner nodes go on the stack unless all leaves below them come
+      // before `after_leaf`.
       if (top.level == 0) {
         if (child > after_leaf) found(child, tree.items[child]);
       } else {
@@ -105,13 +117,15 @@ ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_lea
   return tests;
 }
 
-/// 30-bit Morton code of a point in the unit cube.
+/// 30-bit Morton code of a point in the unit cube: 10 bits a coordinate, interleaved.
 ICLOTH_HD inline std::uint64_t morton_code(float x, float y, float z) {
   std::uint64_t code = 0;
   const float p[3] = {x, y, z};
   for (int k = 0; k < 3; ++k) {
     const float scaled = p[k] * 1024.0f;
     std::uint64_t v = scaled >= 1023.0f ? 1023u : (scaled > 0 ? static_cast<unsigned>(scaled) : 0u);
+
+    // These masks spread the 10 bits so that each is followed by two free ones.
     v = (v | (v << 16)) & 0x030000FFu;
     v = (v | (v << 8)) & 0x0300F00Fu;
     v = (v | (v << 4)) & 0x030C30C3u;

@@ -3,12 +3,12 @@
 // Repulsion (paper Section 2.5): quadratic in the predicted gap; a pair whose gap will be below the
 // thickness h pushes with N = k a (h − gap), a the area of its features.
 //
-// Friction: an elastic stick that slips at Coulomb's limit, in the way of Cundall and Strack 1979,
-// "A discrete numerical model for granular assemblies". The tangential force F that a pair ended
-// the last substep with is carried over; the motion D_T along the contact adds −k a D_T to it, and
-// the result is not longer than μN. It is the projection that an augmented Lagrangian of the stick
-// constraint D_T = 0 makes (Alart and Curnier 1991), with the repulsion's k a as its penalty.
-// Below the limit nothing creeps: the stick rests at a displacement of less than μ (h − gap).
+// Friction is an elastic stick that slips at Coulomb's limit, after Cundall and Strack 1979, "A
+// discrete numerical model for granular assemblies". The tangential force F that a pair ended the
+// last substep with is carried over; the motion D_T along the contact adds −k a D_T to it, and the
+// result is not longer than μN. It is the projection that an augmented Lagrangian of the stick
+// constraint D_T = 0 makes (Alart and Curnier 1991), with the repulsion's k a as its penalty. Below
+// the limit nothing creeps: the stick rests at a displacement of less than μ (h − gap).
 #pragma once
 
 #include "kernels/stencil.h"
@@ -49,22 +49,23 @@ struct ContactTerm {
   Index active;   ///< 0: the pair stays further apart than h and adds nothing
 };
 
-/// Part of `a` along the contact.
+/// The part of `a` along the contact.
 ICLOTH_HD inline Vec3r tangential(const Contact& c, Vec3r a) {
   return a - dot(c.normal, a) * c.normal;
 }
 
-/// Gap at the end of the step, `motion` = Σ w (x1 − x0) [m].
+/// The gap at the end of the step, where `motion` is Σ w (x1 − x0) [m].
 ICLOTH_HD inline Real end_gap(const Contact& c, Vec3r motion) {
   return c.gap + dot(c.normal, motion);
 }
 
+/// The law of all contacts of a step.
 struct ContactLaw {
   Real stiffness;  ///< k [N/m³]
   Real dt;         ///< from a change of velocity to a change of position [s]
 };
 
-/// N at the end of the step [N].
+/// The normal force N at the end of the step [N].
 ICLOTH_HD inline Real normal_force(const Contact& c, const ContactLaw& law, Vec3r motion) {
   return law.stiffness * c.area * std::fmax(c.thickness - end_gap(c, motion), Real(0));
 }
@@ -74,7 +75,7 @@ struct Friction {
   bool sliding;  ///< at Coulomb's limit
 };
 
-/// Friction at the end of the step, of a pair that presses with N = `normal` [N].
+/// The friction at the end of the step of a pair that presses with N = `normal` [N].
 ICLOTH_HD inline Friction friction_of(const Contact& c, const ContactLaw& law, Vec3r motion,
                                       Real normal) {
   const Vec3r trial = tangential(c, c.held - (law.stiffness * c.area) * motion);
@@ -90,35 +91,44 @@ struct ContactMotion {
   bool solved;
 };
 
-/// The normal part and, in `c.friction` > 0, the tangential one, linearised about motion.end.
-/// inverse_mass: Σ w²/m of the free corners [1/kg]; last: the term that motion was solved with.
+/// The term of one contact, linearised about motion.end: the normal part and, if `c.friction` > 0,
+/// the tangential one. inverse_mass is Σ w²/m of the free corners [1/kg]; `last` is the term that
+/// motion was solved with.
 ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& law,
                                           const ContactMotion& motion, Real inverse_mass,
                                           const ContactTerm& last) {
   ContactTerm t{};
   if (!(end_gap(c, motion.end) < c.thickness)) return t;
   t.active = 1;
+
+  // Repulsion: N = k a (h − gap) is linear in Δv as it is. Its derivative dt² k a n nᵀ goes to the
+  // left side.
   const Vec3r n = c.normal;
   const Real k = law.stiffness * c.area, kdt2 = law.dt * law.dt * k;
   const Real approach = dot(n, motion.free);
   t.impulse = (law.dt * k * (c.thickness - c.gap - approach)) * n;
   Mat3r h = kdt2 * outer(n, n);
   if (c.friction > 0) {
+    // Friction needs an estimate of the normal force. Before the first solve it is what the present
+    // compression carries plus what stops the approach, since the predicted gap alone would
+    // overestimate it.
     const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
     Real normal = normal_force(c, law, motion.end);
     if (!motion.solved || last.active == 0) {
-      // What the present compression carries, and what stops the approach.
       const Real stop = std::fmax(-dot(n, motion.end), Real(0)) / (law.dt * law.dt * inverse_mass);
       normal = std::fmin(normal, carried + stop);
     }
+
+    // The trial force of Coulomb's projection.
     const Real limit = c.friction * normal;
     const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
     const Vec3r held = tangential(c, c.held), trial = held - k * end;
     const Real length = norm(trial);
-    // A pair that is found to slide one way when it was taken to slide the other way comes to rest
-    // within the step. Before a solve: one that stuck is expected to stay, one that is under way
-    // to slide on, and any other to come to rest where its sliding force alone would turn its
-    // expected motion round.
+
+    // A pair that is found to slide in one direction when it was taken to slide in the opposite one
+    // comes to rest within the step. Before a solve, a pair that stuck is expected to go on
+    // sticking, one that is under way to go on sliding, and any other to come to rest where its
+    // sliding force alone would reverse its expected motion.
     const bool under_way = c.stuck == 0 && carried > 0 && k * norm(start) > c.friction * carried;
     const bool turns =
         motion.solved
@@ -126,6 +136,8 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
             : c.stuck != 0 || (!under_way && limit * law.dt * law.dt * inverse_mass > norm(end));
     const bool slips = length > limit && !turns;
     if (slips) {
+      // A sliding pair pulls with the limit along its trial force; across that direction the
+      // stiffness is reduced by limit / length, as the derivative of the projection says.
       const Vec3r d = (Real(1) / length) * trial;
       t.sliding = d;
       const Real turn = limit / length;  // of k: what is left of it across d
@@ -133,15 +145,18 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
       t.impulse += law.dt * (limit * d - (turn * k) * (from - dot(d, from) * d));
       h += (turn * kdt2) * (Mat3r::identity(1) - outer(n, n) - outer(d, d));
     } else {
+      // A sticking pair is a spring of stiffness k in both tangential directions.
       t.impulse += law.dt * (held - k * start);
       h += kdt2 * (Mat3r::identity(1) - outer(n, n));
     }
   }
+
+  // Only six of the nine entries differ, as H is symmetric.
   t.h = {{h.m[0], h.m[1], h.m[2], h.m[4], h.m[5], h.m[8]}};
   return t;
 }
 
-/// Force with which the linear term acted when the motion came out as motion.end [N].
+/// The force with which the linear term acted when the motion came out as motion.end [N].
 ICLOTH_HD inline Vec3r applied_force(const ContactTerm& t, const ContactLaw& law,
                                      const ContactMotion& motion) {
   const Vec3r dv = (Real(1) / law.dt) * (motion.end - motion.free);

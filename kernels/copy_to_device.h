@@ -1,4 +1,4 @@
-// The primitive by which a solver hands its positions to a reader on the same device.
+// The primitive by which a solver copies its positions for a reader on the same device.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Makes `slot` a copy of `x` in device memory, behind the work that the device already has; the
-/// memory of an earlier call is used again. Builds without a device leave it empty. Never throws
-/// for reasons of the device: DevicePositions::failure says them.
+/// Makes `slot` a copy of `x` in device memory, ordered behind the work that the device already
+/// has. The memory of an earlier call is used again. Builds without a device leave `slot` empty.
+/// Errors of the device are never thrown; DevicePositions::failure says them.
 inline void copy_to_device(View<const Vec3<Real>> x, std::unique_ptr<DevicePositions>& slot) {
 #if defined(__CUDACC__)
   auto* positions = dynamic_cast<CudaPositions*>(slot.get());

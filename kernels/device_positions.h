@@ -1,4 +1,5 @@
-// Positions that the solver hands to a reader on its own device, without a way over the host.
+// Positions that the solver leaves for a reader on its own device, without copying them to the
+// host.
 #pragma once
 
 #include <string>

@@ -11,11 +11,12 @@ namespace icloth {
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float), "readers expect tightly packed floats");
 
-/// Never throws: what goes wrong on the device is said in `failure`, and the reader takes another
-/// way. Memory and events are made by the first copy and kept.
+/// It never throws: an error of the device is said in `failure`, and the reader copies over the
+/// host instead. Memory and events are made by the first copy and kept.
 class CudaPositions final : public DevicePositions {
  public:
-  /// Errors are not looked at: it runs at program exit even after the driver has shut down.
+  /// Errors are not looked at here, since it runs at program exit even after the driver has shut
+  /// down.
   ~CudaPositions() override { release(); }
 
   /// Copies `n` positions from memory of the calling thread's device, behind all work that the
@@ -32,6 +33,7 @@ class CudaPositions final : public DevicePositions {
   }
 
  private:
+  /// Makes memory for `n` positions and the two events, where those of the last copy do not serve.
   bool prepare(Index n) {
     int current = 0;
     if (!works(cudaGetDevice(&current))) return false;

@@ -1,4 +1,4 @@
-// Closest points of a point and a triangle, and of two segments, in 3D.
+// The closest points of a point and a triangle, and of two segments, in 3D.
 //
 // Robust in the sense that every answer is a pair of points of the two primitives and that its
 // distance is the smallest of all stationary candidates: the interior solution is only trusted
@@ -41,6 +41,7 @@ inline constexpr T kIllConditioned2 = sizeof(T) == 4 ? T(1e-4) : T(1e-8);
 
 namespace detail {
 
+/// Replaces `best` by the closest point of the edge x0 x1 where that is closer.
 template <class T>
 ICLOTH_HD void keep_closer(TrianglePoint<T>& best, Vec3<T> p, Vec3<T> x0, Vec3<T> x1, int k0,
                            int k1) {
@@ -53,6 +54,7 @@ ICLOTH_HD void keep_closer(TrianglePoint<T>& best, Vec3<T> p, Vec3<T> x0, Vec3<T
   best.distance2 = d2;
 }
 
+/// Replaces `best` by the given points of the two segments where those are closer.
 template <class T>
 ICLOTH_HD void keep_closer(SegmentPoints<T>& best, Vec3<T> gap, T s, T t) {
   const T d2 = norm2(gap);
@@ -68,15 +70,21 @@ ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> 
   const T nn = norm2(n);
   TrianglePoint<T> best;
   best.distance2 = T(INFINITY);
-  // Areas of the two sub-triangles opposite to b and c, times 2|n|.
+
+  // w1 and w2 are the areas of the two sub-triangles opposite to b and c, times 2|n|.
   const T w1 = dot(cross(q, e2), n), w2 = dot(cross(e1, q), n);
   const T w0 = T(1) - w1 / nn - w2 / nn;
+
+  // A well-conditioned solution inside the face is the answer.
   if (w0 > T(0) && w1 > T(0) && w2 > T(0)) {  // false for nn = 0
     const T height = dot(q, n);
     best = {{w0, w1 / nn, w2 / nn}, height * (height / nn), true};
     if (nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
     best.distance2 = norm2(q - best.w[1] * e1 - best.w[2] * e2);
   }
+
+  // Otherwise the closest point lies on an edge, or the interior solution has to prove itself
+  // against the edges.
   detail::keep_closer(best, p, a, b, 0, 1);
   detail::keep_closer(best, p, b, c, 1, 2);
   detail::keep_closer(best, p, c, a, 2, 0);
@@ -90,6 +98,7 @@ ICLOTH_HD SegmentPoints<T> closest_points_segments(Vec3<T> a0, Vec3<T> a1, Vec3<
   const T nn = norm2(n);
   SegmentPoints<T> best;
   best.distance2 = T(INFINITY);
+
   // The common normal meets both lines at s and t.
   const T s = dot(cross(q, e2), n), t = dot(cross(q, e1), n);
   if (s > T(0) && s < nn && t > T(0) && t < nn) {
@@ -98,8 +107,9 @@ ICLOTH_HD SegmentPoints<T> closest_points_segments(Vec3<T> a0, Vec3<T> a1, Vec3<
     if (nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
     best.distance2 = norm2(q + best.t * e2 - best.s * e1);
   }
-  // The distance is convex over the square of (s,t): without an interior minimum one lies on a
-  // side.
+
+  // The distance is convex over the square of (s,t), so without an interior minimum there is one on
+  // a side of the square.
   const T s0 = closest_on_segment(b0, a0, a1), s1 = closest_on_segment(b1, a0, a1);
   const T t0 = closest_on_segment(a0, b0, b1), t1 = closest_on_segment(a1, b0, b1);
   detail::keep_closer(best, q - s0 * e1, s0, T(0));

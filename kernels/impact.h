@@ -1,4 +1,4 @@
-// What a collision leaves behind: an impact of one round, and the constraint that is kept of it.
+// The records of a collision: an impact of one round, and the constraint that is kept of it.
 #pragma once
 
 #include "kernels/stencil.h"

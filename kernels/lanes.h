@@ -25,11 +25,13 @@ ICLOTH_HD inline Lanes& operator+=(Lanes& a, Lanes b) {
   return a;
 }
 #else
-// Written out because compilers drop a lane that is not used and then shuffle the other three.
+// The vector type is written out because compilers drop a lane that is not used and then shuffle
+// the other three.
 using Lanes = Real __attribute__((vector_size(4 * sizeof(Real))));
 #endif
 
-/// Asks for memory that is read soon, `ahead` numbers from `from`; beyond the end it does no harm.
+/// Prefetches memory that is read soon, `ahead` numbers from `from`. Beyond the end of the memory
+/// it does no harm.
 ICLOTH_HD inline void prefetch([[maybe_unused]] const Real* from,
                                [[maybe_unused]] std::ptrdiff_t ahead) {
 #if !defined(__CUDACC__)

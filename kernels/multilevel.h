@@ -22,11 +22,12 @@ struct Dots {
   ICLOTH_HD friend Dots operator+(Dots a, Dots b) { return {a.rz + b.rz, a.rr + b.rr}; }
 };
 
-/// z = D⁻¹ r.
+/// The preconditioner z = D⁻¹ r.
 struct BlockJacobi {
   View<const Mat3r> inverse_diagonal;  ///< (rows)
 
-  /// residual(i) sets r[i] and returns it; writes z. Returns r·z and r·r.
+  /// Applies the preconditioner. residual(i) sets r[i] and returns it; z is written. Returns r·z
+  /// and r·r.
   template <class Team, class Residual>
   ICLOTH_HD Dots operator()(Team& team, const Residual& residual, View<const Vec3r>,
                             View<Vec3r> z) const {
@@ -41,13 +42,13 @@ struct BlockJacobi {
   }
 };
 
-/// Blocks of full rows, the diagonal among them; no rows at all where `first` is empty.
+/// Blocks of full rows, the diagonal among them; there are no rows at all where `first` is empty.
 struct CoarseRows {
   View<const Index> first;   ///< (rows + 1)
   View<const Index> column;  ///< ascending in a row
   View<const Mat3r> value;
 
-  /// f(column, block) for the blocks of a row; none beyond the last row.
+  /// Calls f(column, block) for the blocks of a row, and not at all beyond the last row.
   template <class F>
   ICLOTH_HD void of_row(Index i, const F& f) const {
     if (i + 1 >= first.size()) return;
@@ -78,13 +79,18 @@ struct Multilevel {
   Level level[kMaxLevels];
   int levels;
 
-  /// As of BlockJacobi.
+  /// Applies the preconditioner; the arguments and the result are those of BlockJacobi.
   template <class Team, class Residual>
   ICLOTH_HD Dots operator()(Team& team, const Residual& residual, View<const Vec3r> r,
                             View<Vec3r> out) const {
+    // The V-cycle: residuals are restricted to coarser and coarser levels, then corrections come
+    // back.
     team.for_each(out.size(), [&](Index i) { residual(i); });
     for (int l = 0; l < levels; ++l) go_down(team, l, l == 0 ? r : t);
     for (int l = levels - 2; l >= 0; --l) go_up(team, level[l]);
+
+    // The finest level adds its block diagonal to the correction of its group. Prescribed vertices
+    // take no correction.
     return team.reduce(
         out.size(), Dots{0, 0},
         [&](Index i) {
@@ -104,14 +110,18 @@ struct Multilevel {
     return sum;
   }
 
+  /// Row i after one sweep of damped block Jacobi.
   ICLOTH_HD Vec3r swept(Index i, View<const Vec3r> from) const {
     return from[i] + smoother[i] * (b[i] - multiplied(i, from));
   }
 
-  /// Leaves in t what the next level has to correct, or on the coarsest the correction.
+  /// Leaves in t the residual that the next level has to correct, or on the coarsest level the
+  /// correction itself.
   template <class Team>
   ICLOTH_HD void go_down(Team& team, int l, View<const Vec3r> finer) const {
     const Index first = level[l].first, count = level[l].count;
+
+    // The right-hand side of a node is the sum over its children; the first sweep starts from zero.
     team.for_each(count, [&](Index k) {
       const Index i = first + k;
       Vec3r sum{};
@@ -119,6 +129,8 @@ struct Multilevel {
       b[i] = sum;
       z[i] = smoother[i] * sum;
     });
+
+    // A level with a coarser one below it passes on its residual.
     if (l + 1 < levels) {
       team.for_each(count, [&](Index k) {
         const Index i = first + k;
@@ -126,6 +138,8 @@ struct Multilevel {
       });
       return;
     }
+
+    // The coarsest level sweeps a few times instead, to and fro between two buffers.
     View<Vec3r> from = z, to = t;
     for (int sweep = 0; sweep < kLastSweeps; ++sweep) {
       team.for_each(count, [&](Index k) { to[first + k] = swept(first + k, from); });
@@ -134,7 +148,7 @@ struct Multilevel {
     }
   }
 
-  /// Adds the correction of the coarser level and sweeps; the result is in t.
+  /// Adds the correction of the coarser level and sweeps once; the result is in t.
   template <class Team>
   ICLOTH_HD void go_up(Team& team, const Level& at) const {
     const Index first = at.first;

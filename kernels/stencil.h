@@ -24,21 +24,22 @@ struct Pair {
   Index a, b;
 };
 
-/// Linear functional g(x) = Σ w_a x_{v_a} of four vertices: the gap vector of a VF or EE pair.
-/// Vertices ≥ cloth_vertices belong to obstacles.
+/// A linear functional g(x) = Σ w_a x_{v_a} of four vertices, such as the gap vector of a VF or EE
+/// pair. Vertices ≥ cloth_vertices belong to obstacles.
 struct Stencil {
   Index v[4];
   Real w[4];
 };
 
-/// Σ w_a field[v_a]
+/// The value Σ w_a field[v_a].
 ICLOTH_HD inline Vec3r apply(const Stencil& s, View<const Vec3r> field) {
   Vec3r sum{};
   for (int a = 0; a < 4; ++a) sum += s.w[a] * field[s.v[a]];
   return sum;
 }
 
-/// Pair key that sorts VF before EE, then by element numbers; at most 2³¹ elements each.
+/// A key of a pair that sorts VF before EE, then by element numbers; there are at most 2³¹ elements
+/// each.
 ICLOTH_HD inline std::uint64_t pair_key(bool edge_edge, Pair pair) {
   return (static_cast<std::uint64_t>(edge_edge) << 63) |
          (static_cast<std::uint64_t>(pair.a) << 31) | static_cast<std::uint64_t>(pair.b);

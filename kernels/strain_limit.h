@@ -1,18 +1,21 @@
-// What holds cloth back from stretching beyond a limit: an energy on each principal strain.
+// The limit of stretching: an energy on each principal strain that keeps cloth from going beyond
+// it.
 //
 //   W(G) = φ(g₁) + φ(g₂), g₁ ≥ g₂ the eigenvalues of the Green strain
 //   φ'' = K min(e / w, 1) for an excess e = g − g_limit > 0, else 0
 //
-// Isotropic, twice differentiable, convex in G: its tangent is positive semi-definite as it is.
+// It is isotropic, twice differentiable and convex in G, so its tangent is positive semi-definite
+// as it is.
 #pragma once
 
 #include "kernels/membrane.h"
 
 namespace icloth::ICLOTH_BUILD {
 
-/// w: the excess at which all of K has come in. In terms of stretch about 2 %.
+/// w is the excess at which all of K has come in, about 2 % in terms of stretch.
 inline constexpr double kLimitWidth = 0.02;
 
+/// The stress and the tangent of the limit at one strain, in principal axes.
 struct StrainLimit {
   bool active;
   Real qu, qv;      ///< first principal direction in material axes
@@ -21,7 +24,7 @@ struct StrainLimit {
   Real shear;       ///< (φ'(g₁) − φ'(g₂)) / (g₁ − g₂)
 };
 
-/// φ, φ' and φ'' at an excess.
+/// φ, φ' and φ'' at an excess e.
 struct LimitCurve {
   Real stiffness;
   ICLOTH_HD Real energy(Real e) const {
@@ -41,28 +44,33 @@ struct LimitCurve {
   }
 };
 
+/// Evaluates the limit of a fabric at strain g.
 ICLOTH_HD inline StrainLimit strain_limit(const Fabric& fabric, Sym2 g) {
   StrainLimit t{};
   if (!(fabric.limit_strain > 0)) return t;
+
+  // The principal strains are m ± d. Nothing happens unless the larger one exceeds the limit.
   const Real m = Real(0.5) * (g.uu + g.vv), h = Real(0.5) * (g.uu - g.vv);
   const Real d = std::sqrt(h * h + g.uv * g.uv);
   const Real e[2] = {m + d - fabric.limit_strain, m - d - fabric.limit_strain};
   if (!(e[0] > 0)) return t;
   t.active = true;
-  // The longer of two multiples of the eigenvector of m + d.
+
+  // The principal direction is the longer of two multiples of the eigenvector of m + d.
   const Real qu = h > 0 ? d + h : g.uv, qv = h > 0 ? g.uv : d - h;
   const Real length = std::sqrt(qu * qu + qv * qv);
   t.qu = length > 0 ? qu / length : Real(1);
   t.qv = length > 0 ? qv / length : Real(0);
   const LimitCurve curve{fabric.limit_stiffness};
   for (int i = 0; i < 2; ++i) t.stress[i] = curve.stress(e[i]), t.tangent[i] = curve.tangent(e[i]);
-  // Where both are nearly equal the quotient is the slope between them.
+
+  // Where both strains are nearly equal the quotient is the slope between them.
   t.shear = 2 * d > Real(1e-3) ? (t.stress[0] - t.stress[1]) / (2 * d)
                                : curve.tangent(Real(0.5) * (e[0] + e[1]));
   return t;
 }
 
-/// Its stress in material axes.
+/// The stress of the limit in material axes.
 ICLOTH_HD inline Sym2 limit_stress(const StrainLimit& t) {
   const Real a = t.stress[0], b = t.stress[1];
   return {a * t.qu * t.qu + b * t.qv * t.qv, (a - b) * t.qu * t.qv,

@@ -77,19 +77,19 @@ ICLOTH_HD T norm_max(Vec3<T> a) {
   const T xy = x > y ? x : y;
   return xy > z ? xy : z;
 }
-/// Conversion between precisions, spelled out where it happens.
+/// Converts between precisions, spelled out where it happens.
 template <class To, class From>
 ICLOTH_HD constexpr Vec3<To> convert(Vec3<From> a) {
   return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
 }
 
-/// Multiplied and added in double precision.
+/// The dot product, multiplied and added in double precision.
 template <class T>
 ICLOTH_HD constexpr double dot_double(Vec3<T> a, Vec3<T> b) {
   return dot(convert<double>(a), convert<double>(b));
 }
 
-/// 3×3 matrix, row-major.
+/// A 3×3 matrix, row-major.
 template <class T>
 struct Mat3 {
   T m[9]{};
@@ -129,13 +129,13 @@ template <class T>
 ICLOTH_HD constexpr Mat3<T> transpose(const Mat3<T>& a) {
   return {{a.m[0], a.m[3], a.m[6], a.m[1], a.m[4], a.m[7], a.m[2], a.m[5], a.m[8]}};
 }
-/// a bᵀ
+/// The outer product a bᵀ.
 template <class T>
 ICLOTH_HD constexpr Mat3<T> outer(Vec3<T> a, Vec3<T> b) {
   return {{a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x, a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y,
            a.z * b.z}};
 }
-/// Inverse of a symmetric positive definite matrix by cofactors.
+/// The inverse of a symmetric positive definite matrix, by cofactors.
 template <class T>
 ICLOTH_HD constexpr Mat3<T> inverse_spd(const Mat3<T>& a) {
   const T c00 = a.m[4] * a.m[8] - a.m[5] * a.m[7];

@@ -1,4 +1,4 @@
-// Closest points of a moving pair at one time, and directions that may separate the pair there.
+// The closest points of a moving pair at one time, and directions that may separate the pair there.
 //
 // The directions are built from the closest features (normal of the face, common normal of two
 // edges, perpendicular to one edge, difference of two points) rather than from the difference of
@@ -23,7 +23,8 @@ namespace detail {
 inline constexpr double kNearBorder = 1e-6;
 inline constexpr double kThin2 = 1e-8;  // squared sine of the angle between two edges
 
-/// Component of r orthogonal to e; twice, so that only rounding of the result stays along e.
+/// Component of r orthogonal to e. The projection runs twice, so that only the rounding of the
+/// result stays along e.
 template <class N>
 ICLOTH_HD Vec3<N> orthogonal_to(Vec3<N> r, Vec3<N> e) {
   const N ee = norm2(e);
@@ -31,6 +32,7 @@ ICLOTH_HD Vec3<N> orthogonal_to(Vec3<N> r, Vec3<N> e) {
   const Vec3<N> d = r - (dot(r, e) / ee) * e;
   return d - (dot(d, e) / ee) * e;
 }
+/// d or −d, whichever points towards r.
 template <class N>
 ICLOTH_HD Vec3<N> towards(Vec3<N> d, Vec3<N> r) {
   return dot(d, r) < N(0) ? -d : d;
@@ -38,7 +40,7 @@ ICLOTH_HD Vec3<N> towards(Vec3<N> d, Vec3<N> r) {
 
 }  // namespace detail
 
-/// Closest points of vertex and face at time t.
+/// Closest points of vertex and face at time t. The vertex is the origin of all coordinates.
 template <class N>
 ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::vf, N>& pair, N t) {
   const Vec3<N> r[3] = {pair.at(t, 0), pair.at(t, 1), pair.at(t, 2)};
@@ -48,11 +50,17 @@ ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::vf, N>& pair, N
   ClosestPair<N> out{{N(1), -x.w[0], -x.w[1], -x.w[2]}, n, n, false};
   // The edge opposite to the smallest weight is the closest one.
   const int k = x.w[0] <= x.w[1] ? (x.w[0] <= x.w[2] ? 0 : 2) : (x.w[1] <= x.w[2] ? 1 : 2);
+
+  // Where the closest point is inside the face and not near its border, the normal of the face is
+  // the only promising direction.
   if (x.interior) {
     const bool thin = !(norm2(n) > N(detail::kThin2) * norm2(e1) * norm2(e2));
     out.doubtful = thin || x.w[k] < N(detail::kNearBorder);
     if (!out.doubtful) return out;
   }
+
+  // Near or on the border the closest feature is an edge, whose perpendicular counts, or an end of
+  // it.
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   Vec3<N> side = x.w[i] > x.w[j] ? r[i] : r[j];
   if (x.w[i] > N(0) && x.w[j] > N(0)) side = detail::orthogonal_to(side, r[j] - r[i]);
@@ -71,6 +79,9 @@ ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::ee, N>& pair, N
   const SegmentPoints<N> x = closest_points_segments(Vec3<N>{}, e1, r[0], r[2]);
   ClosestPair<N> out{{x.s - N(1), -x.s, N(1) - x.t, x.t}, n, n, false};
   const bool inside_a = x.s > N(0) && x.s<N(1), inside_b = x.t> N(0) && x.t < N(1);
+
+  // Where both closest points are inside their edges, the common normal is the direction to try. It
+  // is doubtful when the edges are nearly parallel or one of the points is near an end.
   if (inside_a && inside_b) {
     const N border =
         detail::smaller(detail::smaller(x.s, N(1) - x.s), detail::smaller(x.t, N(1) - x.t));
@@ -78,6 +89,9 @@ ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::ee, N>& pair, N
     out.doubtful = thin || border < N(detail::kNearBorder);
     if (!out.doubtful) return out;
   }
+
+  // Otherwise a pair of end points is closest, or an end point and an edge. In the first case their
+  // difference is the direction, in the second its part perpendicular to the edge.
   const Vec3<N> nearest = r[(x.s > N(0.5) ? 1 : 0) + (x.t > N(0.5) ? 2 : 0)];
   Vec3<N> side = nearest;
   if (inside_a || inside_b) {

@@ -20,7 +20,7 @@
 
 namespace icloth {
 
-/// A time after the end: does not happen in [0,1].
+/// A time after the end, which stands for "does not happen in [0,1]".
 inline constexpr double kNever = 2;
 
 /// Bound of the relative error of one operation.
@@ -55,8 +55,8 @@ ICLOTH_HD T largest_component(Vec3<T> a, Vec3<T> b) {
 
 }  // namespace detail
 
-/// The three vectors whose determinant is the volume, at t = 0 and t = 1.
-/// vf: the two edges of the face from v0, and vertex − v0. ee: both edges, and b0 − a0.
+/// The three vectors whose determinant is the volume, at t = 0 and t = 1. For vf they are the two
+/// edges of the face from v0, and vertex − v0. For ee they are both edges, and b0 − a0.
 template <class T>
 struct VolumeVectors {
   Vec3<T> b0, c0, p0, b1, c1, p1;
@@ -68,13 +68,15 @@ struct VolumeCubic {
   T a{}, k1x3{}, k2x3{}, b{};
   T error_ends{}, error_inner{};
 
-  /// All four coefficients have one certain sign: f has no zero in [0,1]. False for NaN.
+  /// True when all four coefficients certainly have one sign, so that f has no zero in [0,1]. False
+  /// for NaN.
   ICLOTH_HD bool certainly_nonzero() const {
     return (a > error_ends && b > error_ends && k1x3 > error_inner && k2x3 > error_inner) ||
            (a < -error_ends && b < -error_ends && k1x3 < -error_inner && k2x3 < -error_inner);
   }
 };
 
+/// The coefficients of the cubic, and the error bounds that the head of this file derives.
 template <class T>
 ICLOTH_HD VolumeCubic<T> volume_cubic(const VolumeVectors<T>& v) {
   // Below this floor products may underflow; raising a factor only widens the bound.
@@ -83,6 +85,8 @@ ICLOTH_HD VolumeCubic<T> volume_cubic(const VolumeVectors<T>& v) {
   const T size_c = detail::larger(detail::largest_component(v.c0, v.c1), floor);
   const T size_p = detail::larger(detail::largest_component(v.p0, v.p1), floor);
   const T unit = kRoundoff<T> * (size_b * size_c * size_p);
+
+  // The coefficients are those of the head of this file, the inner two times 3 to save a division.
   const Vec3<T> n0 = cross(v.b0, v.c0), n1 = cross(v.b1, v.c1);
   const Vec3<T> m = cross(v.b0, v.c1) + cross(v.b1, v.c0);
   return {dot(n0, v.p0),
@@ -93,8 +97,8 @@ ICLOTH_HD VolumeCubic<T> volume_cubic(const VolumeVectors<T>& v) {
           T(170) * unit};
 }
 
-/// Bernstein coefficients and the bound within which the computed cubic, evaluated in T anywhere in
-/// [0,1], agrees with the true volume.
+/// Bernstein coefficients, and the bound within which the computed cubic, evaluated in T anywhere
+/// in [0,1], agrees with the true volume.
 template <class T>
 struct Bernstein3 {
   T c[4];
@@ -102,14 +106,16 @@ struct Bernstein3 {
 
   ICLOTH_HD explicit Bernstein3(const VolumeCubic<T>& f)
       : c{f.a, f.k1x3 / T(3), f.k2x3 / T(3), f.b} {
-    // 170/3 u S of the coefficients; 32 u max|c| for the division, for three rounds of linear
-    // interpolation (9 u), for 1 − t (3 u) and for times off by one rounding (|f'| ≤ 6 max|c|).
+    // The bound is 170/3 u S of the coefficients plus 32 u max|c|, which covers the division, three
+    // rounds of linear interpolation (9 u), 1 − t (3 u) and times off by one rounding (|f'| ≤ 6
+    // max|c|).
     const T ends = detail::larger(detail::absolute(c[0]), detail::absolute(c[3]));
     const T inner = detail::larger(detail::absolute(c[1]), detail::absolute(c[2]));
     error = f.error_inner / T(3) + T(32) * kRoundoff<T> * detail::larger(ends, inner);
   }
 
-  /// All coefficients vanish within the error: coplanar throughout as far as T can tell.
+  /// True when all coefficients vanish within the error: the points are coplanar throughout as far
+  /// as T can tell.
   ICLOTH_HD bool vanishes() const {
     for (T x : c) {
       if (detail::absolute(x) > error) return false;
@@ -117,23 +123,28 @@ struct Bernstein3 {
     return true;
   }
 
+  /// The value at t, by de Casteljau's scheme.
   ICLOTH_HD T operator()(T t) const {
     const T s = T(1) - t;
     const T x = s * c[0] + t * c[1], y = s * c[1] + t * c[2], z = s * c[2] + t * c[3];
     return s * (s * x + t * y) + t * (s * y + t * z);
   }
 
-  /// A third of the derivative.
+  /// A third of the derivative at t.
   ICLOTH_HD T slope(T t) const {
     const T s = T(1) - t, x = c[1] - c[0], y = c[2] - c[1], z = c[3] - c[2];
     return s * (s * x + t * y) + t * (s * y + t * z);
   }
 
-  /// Coefficients over the interval [t0,t1] (polar form), into out[4].
+  /// Writes the coefficients over the interval [t0,t1] into out[4]. They are the polar form of the
+  /// cubic at the combinations of t0 and t1.
   ICLOTH_HD void restrict_to(T t0, T t1, T* out) const {
+    // x, y and z are the first round of interpolation at either end of the interval.
     const T s0 = T(1) - t0, s1 = T(1) - t1;
     const T x0 = s0 * c[0] + t0 * c[1], y0 = s0 * c[1] + t0 * c[2], z0 = s0 * c[2] + t0 * c[3];
     const T x1 = s1 * c[0] + t1 * c[1], y1 = s1 * c[1] + t1 * c[2], z1 = s1 * c[2] + t1 * c[3];
+
+    // p and q are the second round; the digits say at which ends the two rounds were evaluated.
     const T p00 = s0 * x0 + t0 * y0, q00 = s0 * y0 + t0 * z0;
     const T p01 = s1 * x0 + t1 * y0, q01 = s1 * y0 + t1 * z0;
     const T p11 = s1 * x1 + t1 * y1, q11 = s1 * y1 + t1 * z1;

@@ -1,4 +1,4 @@
-// Two primitives, vertex and face or edge and edge, whose points move linearly: differences of
+// Two primitives, vertex and face or edge and edge, whose points move linearly: the differences of
 // their points, and certified separation by a fixed direction.
 //
 // A direction d separates the primitives at time t when d·(y − x) > 0 for all points x of the one
@@ -12,7 +12,7 @@
 
 namespace icloth {
 
-/// Four points at t = 0 and t = 1. vf: vertex, face v0 v1 v2. ee: a0 a1 b0 b1.
+/// Four points at t = 0 and t = 1. They are vertex and face v0 v1 v2 for vf, a0 a1 b0 b1 for ee.
 template <class T>
 struct CcdQuery {
   Vec3<T> p0[4], p1[4];
@@ -24,19 +24,20 @@ enum class PairKind { vf, ee };
 template <PairKind K>
 inline constexpr int kDifferences = K == PairKind::vf ? 3 : 4;
 
-/// Difference i of the points x at one end. vf: vertex − v_i. ee: b0 − a0, b0 − a1, b1 − a0, b1 −
-/// a1.
+/// Difference i of the points x at one end. For vf it is vertex − v_i; for ee the differences are
+/// b0 − a0, b0 − a1, b1 − a0 and b1 − a1.
 template <PairKind K, class To, class T>
 ICLOTH_HD Vec3<To> point_difference(const Vec3<T>* x, int i) {
   if constexpr (K == PairKind::vf) return convert<To>(x[0]) - convert<To>(x[i + 1]);
   return convert<To>(x[2 + i / 2]) - convert<To>(x[i % 2]);
 }
 
-/// Edges of the face from v0 and vertex − v0, or both edges and b0 − a0.
+/// The vectors of the volume: the edges of the face from v0 and vertex − v0, or both edges and b0 −
+/// a0.
 template <PairKind K, class To, class T>
 ICLOTH_HD VolumeVectors<To> volume_vectors(const CcdQuery<T>& q) {
   constexpr bool vf = K == PairKind::vf;
-  // b from o to b1, c from c0 to the last point, p from o.
+  // b goes from o to b1, c from c0 to the last point, p starts at o.
   constexpr int o = vf ? 1 : 0, b1 = vf ? 2 : 1, c0 = vf ? 1 : 2, p = vf ? 0 : 2;
   const auto difference = [](Vec3<T> x, Vec3<T> y) { return convert<To>(x) - convert<To>(y); };
   return {difference(q.p0[b1], q.p0[o]), difference(q.p0[3], q.p0[c0]),
@@ -45,9 +46,12 @@ ICLOTH_HD VolumeVectors<To> volume_vectors(const CcdQuery<T>& q) {
 }
 
 /// True when a coordinate axis separates the primitives by more than `margin` at both ends, hence
-/// always. Exact for a margin of 0: the sign of the difference of two floating-point numbers is.
+/// always. It is exact for a margin of 0, as the sign of the difference of two floating-point
+/// numbers is.
 template <PairKind K, class T>
 ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1, T margin) {
+  // The smallest and the largest difference along each axis, over all pairs of points and both
+  // ends.
   Vec3<T> least = r0[0], most = r0[0];
   const auto include = [&](Vec3<T> r) {
     least = {detail::smaller(least.x, r.x), detail::smaller(least.y, r.y),
@@ -59,11 +63,13 @@ ICLOTH_HD bool separated_by_axis(const Vec3<T>* r0, const Vec3<T>* r1, T margin)
     include(r0[i]);
     include(r1[i]);
   }
+
+  // Differences of one sign along an axis mean that the axis separates.
   return detail::larger(least.x, detail::larger(least.y, least.z)) > margin ||
          detail::smaller(most.x, detail::smaller(most.y, most.z)) < -margin;
 }
 
-/// All differences in N (double or DoubleDouble) at both ends.
+/// All differences of the pair in N (double or DoubleDouble) at both ends.
 template <PairKind K, class N>
 struct PairMotion {
   static constexpr int kCount = kDifferences<K>;
@@ -91,14 +97,16 @@ struct PairMotion {
 
 namespace detail {
 
-/// Time interval in which a few linear functions of t are all positive, narrowed down one by one.
+/// The time interval in which a few linear functions of t are all positive, narrowed down function
+/// by function.
 template <class N>
 struct PositiveSpan {
   N t;            // the interval has to hold this time …
   N end{kNever};  // … and reaches to here
   bool holds{true};
 
-  /// s0, s1: lower bounds of the function at t = 0 and 1, relative rounding errors allowed.
+  /// Takes one function into account. s0 and s1 are lower bounds of it at t = 0 and 1, up to
+  /// relative rounding errors.
   ICLOTH_HD void narrow(N s0, N s1) {
     if (s0 > N(0) && s1 > N(0)) return;
     const N crossing = s0 / (s0 - s1);
@@ -122,12 +130,13 @@ ICLOTH_HD N component(Vec3<N> a, int axis) {
 
 }  // namespace detail
 
-/// End of the time interval that starts at t and in which d separates the primitives by more than
-/// `margin` [length]; kNever when it reaches beyond 1, t itself when they are not separated there.
-/// Everything rounds down.
+/// The end of the time interval that starts at t and in which d separates the primitives by more
+/// than `margin` [length]. It is kNever when the interval reaches beyond 1, and t itself when they
+/// are not separated there. Everything rounds down.
 template <PairKind K, class N>
 ICLOTH_HD N separated_until(const PairMotion<K, N>& pair, Vec3<N> d, double margin, N t) {
-  // Dot product of rounded differences: 4 roundings a term at most; 6, and a floor for underflow.
+  // A dot product of rounded differences has 4 roundings a term at most; 6 are counted, and a floor
+  // covers underflow.
   const N reach = detail::absolute(d.x) * pair.size.x + detail::absolute(d.y) * pair.size.y +
                   detail::absolute(d.z) * pair.size.z;
   N error = N(6) * kRoundoff<N> * reach + N(1e-290);
@@ -139,8 +148,9 @@ ICLOTH_HD N separated_until(const PairMotion<K, N>& pair, Vec3<N> d, double marg
   return span.result();
 }
 
-/// The same for the six directions along the axes; the latest end, and its direction into d. A
-/// difference of two stored numbers has a relative error only, so here the smallest gap counts.
+/// The latest end over the six directions along the axes, and its direction in d. A difference of
+/// two stored numbers has a relative error only, so here the smallest gap counts and nothing is
+/// subtracted.
 template <PairKind K, class N>
 ICLOTH_HD N separated_by_axes_until(const PairMotion<K, N>& pair, double margin, N t, Vec3<N>& d) {
   N best = t;

@@ -1,8 +1,8 @@
-// Unevaluated sum of two doubles: about 106 bits, for the few queries that fp64 cannot decide.
+// An unevaluated sum of two doubles, about 106 bits, for the few queries that fp64 cannot decide.
 //
-// Error-free sum and product after Knuth and Dekker; every operation below has a relative error
-// under 2⁻¹⁰² (bounds of Joldes, Muller and Popescu, 2017, are 2⁻¹⁰² to 2⁻¹⁰⁴) while nothing
-// underflows. Not for speed: about twenty times the cost of double.
+// Sum and product are error-free transformations after Knuth and Dekker. Every operation below has
+// a relative error under 2⁻¹⁰² (the bounds of Joldes, Muller and Popescu, 2017, are 2⁻¹⁰² to 2⁻¹⁰⁴)
+// while nothing underflows. It is about twenty times as slow as double.
 #pragma once
 
 #include <cmath>
@@ -54,7 +54,7 @@ ICLOTH_HD inline DoubleDouble operator*(DoubleDouble a, DoubleDouble b) {
   return exact_sum_ordered(p.hi, p.lo + low);
 }
 ICLOTH_HD inline DoubleDouble operator/(DoubleDouble a, DoubleDouble b) {
-  // Long division, three quotient digits of 53 bits.
+  // This is long division with three quotient digits of 53 bits.
   const double q1 = a.hi / b.hi;
   DoubleDouble r = a - b * DoubleDouble(q1);
   const double q2 = r.hi / b.hi;

@@ -1,7 +1,7 @@
 // Elementary continuous collision detection: do a vertex and a face, or two edges, touch at some
 // time in [0,1] when their points move linearly, and when first?
 //
-// Stands in for the test of Tang et al. 2018, Section 2.2 (exact CCD after Tang et al. 2014). No
+// It stands in for the test of Tang et al. 2018, Section 2.2 (exact CCD after Tang et al. 2014). No
 // contact of the trajectories between the stored numbers is ever missed, and the reported time is
 // never later than the true one. False positives need a gap of about 1e-15 of the extent of the
 // pair (float input) or of about 1e-30 (double input), or a query undecided after kMaxSteps.
@@ -28,12 +28,13 @@ struct CcdHit {
   Vec3d normal{};  // unit; positive towards the side of the gap vector before the contact
 };
 
-/// Steps of the front after which a query counts as a contact.
+/// Number of steps of the front after which a query counts as a contact.
 inline constexpr int kMaxSteps = 100;
 
 namespace detail {
 
-/// Not a number, infinite, or so large that a determinant could overflow.
+/// True for differences that are not numbers, infinite, or so large that a determinant could
+/// overflow.
 template <PairKind K, class T>
 ICLOTH_HD bool out_of_range(const Vec3<T>* r0, const Vec3<T>* r1) {
   T sum{};
@@ -46,9 +47,9 @@ ICLOTH_HD bool out_of_range(const Vec3<T>* r0, const Vec3<T>* r1) {
 
 }  // namespace detail
 
-/// Cheap test in the precision of the input: false when the pair certainly does not touch in [0,1],
-/// true when it may (also for numbers that are not finite). No division, no iteration. With the
-/// `separation` of the full test it keeps what that test may report.
+/// A cheap test in the precision of the input: false when the pair certainly does not touch in
+/// [0,1], true when it may (also for numbers that are not finite). It needs no division and no
+/// iteration. With the `separation` of the full test it keeps whatever that test may report.
 template <PairKind K, class T>
 ICLOTH_HD bool ccd_filter(const CcdQuery<T>& query, double separation = 0) {
   constexpr int n = kDifferences<K>;
@@ -67,37 +68,42 @@ namespace detail {
 /// Directions that separate for a shorter time than this come from gaps full of rounding errors.
 inline constexpr double kShort = 0x1p-30;
 
-/// Where the front stopped (`time` > 1: it passed), and what moved it there.
+/// The time at which the front stopped (`time` > 1: it passed), and the step that moved it there.
 template <class N>
 struct Front {
   N time;
   N w[4]{};           // weights of the closest points at `time`
   bool clear{false};  // a plain crossing in the interior of both primitives
-  // The side the pair comes from, told by the last step that took longer than kShort:
+
+  // The next three tell the side from which the pair comes, by the last step that took longer than
+  // kShort.
   N since{};       // where that step started
   double side{};   // sign of the volume on it, or 0:
   Vec3<N> last{};  // a direction that separated the pair on it
 };
 
-/// Sign of f for certain, or 0.
+/// The sign of f(t) where it is certain, else 0.
 template <class N>
 ICLOTH_HD double certain_sign(const Bernstein3<N>& f, N t) {
   const N value = f(t);
   return value > f.error ? 1 : value < -f.error ? -1 : 0;
 }
 
-/// f changes its sign for certain within a short time around t.
+/// True when f certainly changes its sign within a short time around t.
 template <class N>
 ICLOTH_HD bool crosses_at(const Bernstein3<N>& f, N t) {
   const N near = N(0x1p-38);
   return certain_sign(f, larger(t - near, N(0))) * certain_sign(f, smaller(t + near, N(1))) < 0;
 }
 
+/// Moves the front in time by the two kinds of steps that the head of this file describes, until it
+/// passes 1 or no direction separates the pair.
 template <PairKind K, class N>
 ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, double margin,
                        Front<N>& front) {
   const N least_step = N(64) * kRoundoff<N>;  // less than this is no progress
   for (int step = 0; step < kMaxSteps; ++step) {
+    // The first kind of step goes up to the first time at which the four points may be coplanar.
     const N start = front.time;
     front.time = first_zero_bound(f, start);
     if (front.time > N(1)) return;
@@ -105,10 +111,15 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
       front.since = start;
       front.side = certain_sign(f, start);
     }
+
+    // A plain crossing in the interior of both primitives is a contact; no direction need be tried.
     const ClosestPair<N> closest = closest_pair(pair, front.time);
     for (int k = 0; k < 4; ++k) front.w[k] = closest.w[k];
     front.clear = !closest.doubtful && crosses_at(f, front.time);
     if (front.clear) return;
+
+    // The second kind of step goes on for as long as some direction separates the pair. The
+    // candidates are those of the closest features first, then the axes.
     const N needed = front.time + least_step;
     Vec3<N> direction = closest.first;
     N end = separated_until(pair, direction, margin, front.time);
@@ -118,6 +129,8 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
     }
     if (end < needed) end = separated_by_axes_until(pair, margin, front.time, direction);
     if (end < needed) return;
+
+    // A step that took long enough tells the side from which the pair comes.
     if (end - front.time > N(kShort)) {
       front.since = front.time;
       front.side = 0;
@@ -128,7 +141,7 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
   }
 }
 
-/// Gap vector of weights w for the given differences between the two primitives.
+/// The gap vector of weights w, from the given differences between the two primitives.
 template <PairKind K>
 ICLOTH_HD Vec3d weighted_gap(const double* w, const Vec3d* r) {
   Vec3d gap;
@@ -139,37 +152,44 @@ ICLOTH_HD Vec3d weighted_gap(const double* w, const Vec3d* r) {
   return gap;
 }
 
-/// Unit normal at the contact, on the side the pair comes from.
+/// The unit normal at the contact, towards the side from which the pair comes.
 template <PairKind K>
 ICLOTH_HD Vec3d contact_normal(const PairMotion<K, double>& pair, const VolumeVectors<double>& v,
                                const Front<double>& front) {
   const double t = front.time;
   const Vec3d b = (1 - t) * v.b0 + t * v.b1, c = (1 - t) * v.c0 + t * v.c1, n = cross(b, c);
   const bool plane = norm2(n) > 1e-16 * norm2(b) * norm2(c);
+
   // The volume is n·gap, and its sign just before the contact is certain.
   if (front.side != 0 && plane) return normalized(front.side * n);
   if (front.side == 0 && norm2(front.last) > 0) return normalized(front.last);
-  // Parallel edges or a sliver: direction of the gap shortly before.
+
+  // For parallel edges or a sliver the direction of the gap shortly before serves.
   const double before = t - 0.05 * (t - front.since);
   const ClosestPair<double> closest = closest_pair(pair, before);
   Vec3d r[kDifferences<K>];
   for (int i = 0; i < kDifferences<K>; ++i) r[i] = pair.at(before, i);
   const Vec3d gap = normalized(weighted_gap<K>(closest.w, r));
   if (t - front.since > kShort && norm2(gap) > 0) return gap;
-  // In touch from the start, no side known: oppose the relative motion.
+
+  // The pair was in touch from the start and no side is known, so the normal opposes the relative
+  // motion.
   const Vec3d motion = weighted_gap<K>(front.w, pair.r1) - weighted_gap<K>(front.w, pair.r0);
   const Vec3d any = normalized(plane ? n : -motion);
   if (!(norm2(any) > 0)) return {0, 1, 0};
   return dot(any, motion) > 0 ? -any : any;
 }
 
+/// The contact that is reported for numbers out of range: at once, at the middle of both
+/// primitives.
 template <PairKind K>
 ICLOTH_HD CcdHit undecidable() {
   if (K == PairKind::ee) return {0, {-0.5, -0.5, 0.5, 0.5}, {0, 1, 0}};
   return {0, {1, -1. / 3, -1. / 3, -1. / 3}, {0, 1, 0}};
 }
 
-/// Moves a front that fp64 stopped on; true when the contact stands.
+/// Goes on in double-double arithmetic from where fp64 stopped. Returns true when the contact
+/// stands.
 template <PairKind K>
 ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, bool coplanar,
                        Front<double>& front) {
@@ -179,7 +199,13 @@ ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, bool coplan
   fine.since = front.time;
   advance(pair, f, margin, fine);
   if (fine.time > DoubleDouble(1)) return false;
-  if (coplanar) return true;  // with directions in the plane, not with what rounding made of it
+
+  // A coplanar pair keeps the directions in its plane: those of the finer front come from a plane
+  // that rounding made up.
+  if (coplanar) return true;
+
+  // The time is rounded down, and the side of the approach is taken over where the finer front
+  // found one.
   front.time = fine.time.hi;
   if (fine.time.lo < 0) front.time *= 1 - 0x1p-52;  // rounds down
   for (int k = 0; k < 4; ++k) front.w[k] = fine.w[k].hi;
@@ -193,8 +219,11 @@ ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, bool coplan
 
 template <PairKind K, class T>
 ICLOTH_HD bool elementary_ccd(const CcdQuery<T>& query, double separation, CcdHit& hit) {
-  // In single precision first: fp64 is slow on most GPUs.
+  // Single precision filters first, since fp64 is slow on most GPUs.
   if (sizeof(T) == 4 && !ccd_filter<K>(query, separation)) return false;
+
+  // Numbers that no bound covers count as a contact, and the two cheap tests in double precision
+  // follow.
   const PairMotion<K, double> pair(query);
   if (out_of_range<K>(pair.r0, pair.r1)) {
     hit = undecidable<K>();
@@ -208,12 +237,17 @@ ICLOTH_HD bool elementary_ccd(const CcdQuery<T>& query, double separation, CcdHi
   const Bernstein3<double> f(cubic);
   const bool coplanar = f.vanishes();
   const double margin = coplanar ? separation : 0;
+
+  // The front in time decides. Where it stopped without a clear crossing and the input is double,
+  // double-double arithmetic goes on.
   Front<double> front{0};
   advance(pair, f, margin, front);
   if (front.time > 1) return false;
   if constexpr (sizeof(T) == 8) {
     if (!front.clear && !confirm<K>(query, margin, coplanar, front)) return false;
   }
+
+  // The front stopped: its time and weights are the contact.
   hit.toi = front.time;
   for (int k = 0; k < 4; ++k) hit.w[k] = front.w[k];
   hit.normal = contact_normal(pair, volume, front);
@@ -222,14 +256,15 @@ ICLOTH_HD bool elementary_ccd(const CcdQuery<T>& query, double separation, CcdHi
 
 }  // namespace detail
 
-/// Vertex against face. On true, `hit` holds the first contact. `separation` [length] is the gap
-/// below which pairs that stay coplanar throughout count as touching; 0: only what touches.
+/// Tests a vertex against a face. On true, `hit` holds the first contact. `separation` [length] is
+/// the gap below which pairs that stay coplanar throughout count as touching; with 0 only pairs
+/// that touch are reported.
 template <class T>
 ICLOTH_HD bool ccd_vf(const CcdQuery<T>& query, double separation, CcdHit& hit) {
   return detail::elementary_ccd<PairKind::vf>(query, separation, hit);
 }
 
-/// Edge against edge; otherwise as ccd_vf.
+/// Tests an edge against an edge; the arguments are those of ccd_vf.
 template <class T>
 ICLOTH_HD bool ccd_ee(const CcdQuery<T>& query, double separation, CcdHit& hit) {
   return detail::elementary_ccd<PairKind::ee>(query, separation, hit);

@@ -30,7 +30,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Pointer and length; does not own. Copied by value into kernels.
+/// A pointer and a length. It owns nothing and is copied by value into kernels.
 template <class T>
 class View {
  public:
@@ -46,7 +46,7 @@ class View {
   }
   ICLOTH_HD Index size() const { return size_; }
   ICLOTH_HD T* data() const { return data_; }
-  /// `count` elements from `first` on.
+  /// The view of `count` elements from `first` on.
   ICLOTH_HD View sub(Index first, Index count) const {
     ICLOTH_ASSERT_BOUNDS(first >= 0 && count >= 0 && first <= size_ - count);
     return {data_ + first, count};
@@ -57,7 +57,7 @@ class View {
   Index size_ = 0;
 };
 
-/// Owning array whose capacity only grows (by 1.5), so that steady state allocates nothing.
+/// An owning array whose capacity only grows (by 1.5), so that a steady state allocates nothing.
 /// Elements are raw bits: fresh ones are undefined until written. Throws std::bad_alloc (CPU) or
 /// std::runtime_error (CUDA) when memory runs out, std::length_error for a negative size.
 template <class T>

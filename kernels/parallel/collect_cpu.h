@@ -4,7 +4,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
 
-/// Emits to the end of a buffer. Copies emit to the same place.
+/// Appends to a buffer. Copies of an emitter append to the same buffer.
 template <class T>
 class Emitter {
  public:
@@ -21,7 +21,7 @@ class BufferPool {
  public:
   using Buffer = std::vector<T>;
 
-  /// A buffer for the life time of the object.
+  /// Holds a buffer for the life time of the object.
   class Lease {
    public:
     explicit Lease(BufferPool& pool) : pool_(pool), buffer_(pool.take()) {}
@@ -66,7 +66,7 @@ class BufferPool {
   std::vector<Buffer*> free_;
 };
 
-/// Where the output of one chunk lies.
+/// The place of the output of one chunk.
 template <class T>
 struct ChunkOutput {
   const std::vector<T>* buffer;
@@ -90,10 +90,15 @@ std::size_t place_chunks(View<ChunkOutput<T>> chunks) {
 
 template <class T, class F>
 Index collect(const char* name, Index n, const F& f, Array<T>& out) {
+  // The pool belongs to the calling thread, as two simulators may run at once; the reference lets
+  // the tasks on other threads use it.
   const ProfileScope scope(name);
   thread_local detail::BufferPool<T> thread_pool;
   detail::BufferPool<T>& pool = thread_pool;
   pool.reset();
+
+  // Chunks have a fixed size, so their order alone decides the result. Each task appends the output
+  // of its chunks to one buffer and notes where it lies.
   const Index count = detail::chunk_count(n, detail::kCollectChunk);
   const auto chunks = detail::scratch<detail::ChunkOutput<T>, 4>(count);
   parallel_for(count, 2, 1, [&](Index begin, Index end) {
@@ -107,12 +112,15 @@ Index collect(const char* name, Index n, const F& f, Array<T>& out) {
       chunks[c] = {&*buffer, before, (*buffer).size() - before, 0};
     }
   });
+
+  // The total decides the length of the result before anything is copied.
   const std::size_t total = detail::place_chunks(chunks);
   if (total > static_cast<std::size_t>(std::numeric_limits<Index>::max())) {
     detail::throw_too_long(name);
   }
   out.resize(static_cast<Index>(total));
   T* const result = out.view().data();
+
   // Copying one chunk is little work, hence the large grain.
   parallel_for(count, 1024, 256, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c) {

@@ -38,7 +38,7 @@ inline int runtime_version() {
   return version;
 }
 
-/// 0 where it cannot be asked.
+/// Value of an attribute, or 0 where it cannot be asked for.
 inline int attribute(cudaDeviceAttr which, int ordinal) {
   int value = 0;
   if (cudaDeviceGetAttribute(&value, which, ordinal) == cudaSuccess) return value;
@@ -68,7 +68,7 @@ inline cudaError_t probe() {
 
 }  // namespace detail
 
-/// Devices that the driver shows; 0 without a driver (`reason`, if given, then says why).
+/// Number of devices that the driver shows; 0 without a driver (`reason`, if given, then says why).
 inline int device_count(std::string* reason = nullptr) {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
@@ -87,7 +87,7 @@ inline std::string device_name(int ordinal) {
   return properties.name;
 }
 
-/// 10 · major + minor.
+/// Compute capability as 10 · major + minor.
 inline int device_capability(int ordinal) {
   return 10 * detail::attribute(cudaDevAttrComputeCapabilityMajor, ordinal) +
          detail::attribute(cudaDevAttrComputeCapabilityMinor, ordinal);
@@ -103,13 +103,16 @@ inline void device_synchronize() {
   ICLOTH_CUDA_CHECK("device_synchronize", cudaDeviceSynchronize());
 }
 
-/// Why this program's kernels cannot run on the device, in one line; empty: they can. Leaves the
-/// device selected for the calling thread where it can be.
+/// Says in one line why this program's kernels cannot run on the device; empty means that they can.
+/// Leaves the device selected for the calling thread where that is possible.
 inline std::string device_problem(int ordinal) {
+  // Without a driver, or with too few devices, nothing else can be asked.
   std::string reason;
   const int count = device_count(&reason);
   if (count == 0) return reason;
   if (ordinal < 0 || ordinal >= count) return no_such_device_problem(ordinal, count);
+
+  // The properties of the device tell what it can never do.
   const std::string name = device_name(ordinal);
   const auto no_code = [&] {
     return no_code_problem(ordinal, name, device_capability(ordinal), detail::built_capabilities(),
@@ -120,6 +123,8 @@ inline std::string device_problem(int ordinal) {
     return device_text(ordinal, name) + " is in compute mode 'prohibited'";
   if (detail::attribute(cudaDevAttrCooperativeLaunch, ordinal) == 0)
     return device_text(ordinal, name) + " cannot launch cooperative kernels, which are needed";
+
+  // A trial launch shows what the properties do not, such as missing code for a newer device.
   cudaError_t error = cudaSetDevice(ordinal);
   if (error == cudaSuccess) error = detail::probe();
   if (error == cudaSuccess) return "";
@@ -128,7 +133,7 @@ inline std::string device_problem(int ordinal) {
   return device_text(ordinal, name) + ": " + cudaGetErrorString(error);
 }
 
-/// True when there is no device_problem; otherwise `reason` (may be null) is it.
+/// True when there is no device_problem; otherwise `reason` (may be null) gets its text.
 inline bool device_usable(std::string* reason = nullptr, int ordinal = 0) {
   const std::string problem = device_problem(ordinal);
   if (reason != nullptr) *reason = problem;

@@ -1,6 +1,6 @@
-// A team of all threads of the CPU. Included by kernels/parallel/parallel_cpu.h; what it offers is
-// said in kernels/parallel/parallel.h. One thread runs the problem and hands out shares of its
-// loops.
+// A team of all threads of the CPU, included by kernels/parallel/parallel_cpu.h. Its members are
+// documented in kernels/parallel/parallel.h. One thread runs the problem and shares out the
+// iterations of its loops.
 #pragma once
 
 namespace icloth::ICLOTH_BUILD {

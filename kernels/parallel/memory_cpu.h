@@ -1,4 +1,4 @@
-// Where arrays live in the CPU builds: ordinary memory, aligned to cache lines.
+// The memory of arrays in the CPU builds: ordinary memory, aligned to cache lines.
 #pragma once
 
 #include <cstddef>

@@ -16,20 +16,21 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// The sum of two values.
 struct Sum {
   template <class T>
   ICLOTH_HD T operator()(T a, T b) const {
     return static_cast<T>(a + b);
   }
 };
-/// Larger of the two; a NaN on either side wins, so that it cannot hide.
+/// The larger of two values; a NaN on either side wins, so that it cannot hide.
 struct Max {
   template <class T>
   ICLOTH_HD T operator()(T a, T b) const {
     return (a > b || a != a) ? a : b;
   }
 };
-/// Smaller of the two; a NaN on either side wins.
+/// The smaller of two values; a NaN on either side wins.
 struct Min {
   template <class T>
   ICLOTH_HD T operator()(T a, T b) const {

@@ -1,7 +1,8 @@
-// The primitives on the CPU, over oneTBB. Included by kernels/parallel/parallel.h, which says what
-// they do.
+// The primitives on the CPU, over oneTBB. This file is included by kernels/parallel/parallel.h,
+// which documents them.
 //
-// Few elements are done by the calling thread: handing work over costs about a microsecond.
+// Few elements are done by the calling thread alone: passing work to another one costs about a
+// microsecond.
 #pragma once
 
 #include <cstring>
@@ -24,7 +25,8 @@ inline constexpr Index kScanChunk = 16384;
 inline constexpr Index kCompactChunk = 4096;
 inline constexpr Index kCollectChunk = 64;  // work of one element is large: it walks a tree or grid
 
-/// Memory that a primitive keeps between its calls; per thread, as two simulators may run at once.
+/// Memory that a primitive keeps between its calls. It is per thread, as two simulators may run at
+/// once.
 template <class T, int Slot>
 View<T> scratch(Index n) {
   thread_local Array<T> array;
@@ -34,7 +36,7 @@ View<T> scratch(Index n) {
 
 inline Index chunk_count(Index n, Index chunk) { return n / chunk + (n % chunk != 0 ? 1 : 0); }
 
-/// body(chunk, first, last) for chunks of fixed size.
+/// Calls body(chunk, first, last) for chunks of fixed size.
 template <class Body>
 void over_chunks(Index n, Index chunk, const Body& body) {
   const Index chunks = chunk_count(n, chunk);
@@ -50,7 +52,8 @@ void over_chunks(Index n, Index chunk, const Body& body) {
   throw std::length_error(std::string(name) + ": more than 2^31 - 1 elements");
 }
 
-/// Four running values for numbers: one alone would wait for the latency of every addition.
+/// Reduces one chunk. Numbers have four running values, since one alone would wait for the latency
+/// of every addition.
 template <class T, class F, class Op>
 T reduce_chunk(Index first, Index last, T identity, const F& shared_f, const Op& op) {
   const F f = shared_f;  // a local copy lets the compiler keep its members in registers
@@ -108,6 +111,8 @@ T reduce(const char* name, Index n, T identity, const F& f, const Op& op) {
 
 inline Index exclusive_scan(const char* name, View<const Index> counts, View<Index> offsets) {
   const ProfileScope scope(name);
+
+  // Each chunk is summed on its own.
   const Index n = counts.size();
   const View<std::int64_t> start =
       detail::scratch<std::int64_t, 1>(detail::chunk_count(n, detail::kScanChunk));
@@ -116,9 +121,13 @@ inline Index exclusive_scan(const char* name, View<const Index> counts, View<Ind
     for (Index i = first; i < last; ++i) sum += counts[i];
     start[c] = sum;
   });
+
+  // The first offset of each chunk follows, in 64 bits so that an overflow is noticed.
   std::int64_t total = 0;
   for (Index c = 0; c < start.size(); ++c) total += std::exchange(start[c], total);
   if (total > std::numeric_limits<Index>::max()) detail::throw_too_long(name);
+
+  // Within a chunk the offsets run on from there.
   detail::over_chunks(n, detail::kScanChunk, [&](Index c, Index first, Index last) {
     Index sum = static_cast<Index>(start[c]);
     for (Index i = first; i < last; ++i) {
@@ -134,6 +143,8 @@ inline Index exclusive_scan(const char* name, View<const Index> counts, View<Ind
 template <class P>
 Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
   const ProfileScope scope(name);
+
+  // Each chunk notes the indices it keeps, packed to the front of its part of the scratch memory.
   const Index chunks = detail::chunk_count(n, detail::kCompactChunk);
   const View<Index> kept = detail::scratch<Index, 2>(n);
   const View<Index> start = detail::scratch<Index, 3>(chunks + 1);
@@ -145,9 +156,13 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
     }
     start[c] = count;
   });
+
+  // The counts become the places of the chunks in the result.
   Index total = 0;
   for (Index c = 0; c < chunks; ++c) total += std::exchange(start[c], total);
   start[chunks] = total;
+
+  // The packed parts are copied together.
   out.resize(total);
   const View<Index> result = out.view();
   detail::over_chunks(n, detail::kCompactChunk, [&](Index c, Index first, Index) {

@@ -10,8 +10,9 @@
 
 namespace icloth {
 
-/// body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is small.
-/// Isolated: while this thread waits it must not start other work that would use its scratch.
+/// Calls body(first, last) over ranges that cover 0 … n − 1, on this thread alone when n is below
+/// `serial_below`. The loop is isolated: while this thread waits it must not start other work that
+/// would use its scratch memory.
 template <class Body>
 void parallel_for(Index n, Index serial_below, Index grain, const Body& body) {
   if (n <= 0) return;

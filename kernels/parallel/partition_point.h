@@ -1,11 +1,12 @@
-// Bisection.
+// Bisection over a range of indices.
 #pragma once
 
 #include "kernels/parallel/platform.h"
 
 namespace icloth::ICLOTH_BUILD {
 
-/// The smallest i of 0 … n for which holds(i) is not true; true comes before false.
+/// The smallest i of 0 … n for which holds(i) is not true, where all true ones come before the
+/// false ones.
 template <class P>
 ICLOTH_HD Index partition_point(Index n, const P& holds) {
   Index low = 0, high = n;

@@ -1,4 +1,4 @@
-// What the kernels need to know about the compiler that reads them.
+// The few facts that the kernels need to know about the compiler that reads them.
 //
 // Stage sources are compiled once a build (cpu32, cpu64, cuda32), each in its own
 // namespace icloth::ICLOTH_BUILD and with its own ICLOTH_REAL. Headers whose text does

@@ -1,6 +1,7 @@
-// Time spent in each primitive, by the name that its caller gave it.
+// The time spent in each primitive, by the name that its caller gave it.
 //
-// One table for all builds in the program. Off by default: a call then costs one relaxed load.
+// One table serves all builds in the program. It is off by default: a call then costs one relaxed
+// load.
 #pragma once
 
 #include <atomic>

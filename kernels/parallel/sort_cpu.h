@@ -19,6 +19,7 @@ struct SortItem {
   Index place;  // before sorting: makes an ordinary sort stable
 };
 
+/// Sorts a short list by comparison, on the calling thread.
 inline void sort_few(View<std::uint64_t> keys, View<Index> values, std::uint64_t mask) {
   const Index n = keys.size();
   const View<SortItem> items = scratch<SortItem, 5>(n);
@@ -32,7 +33,7 @@ inline void sort_few(View<std::uint64_t> keys, View<Index> values, std::uint64_t
   }
 }
 
-/// Bits in which at least two keys differ.
+/// The bits in which at least two keys differ.
 inline std::uint64_t varying_bits(View<const std::uint64_t> keys) {
   const Index n = keys.size();
   const View<std::uint64_t> partial = scratch<std::uint64_t, 6>(chunk_count(n, kSortChunk));
@@ -46,7 +47,7 @@ inline std::uint64_t varying_bits(View<const std::uint64_t> keys) {
   return varying;
 }
 
-/// One pass over all pairs: orders them by the digit at `shift`.
+/// One pass over all keys and values, which orders them by the digit at `shift`.
 class DigitPass {
  public:
   DigitPass(Index n, std::uint64_t mask) : n_(n), mask_(mask), chunks_(chunk_count(n, kSortChunk)) {
@@ -78,7 +79,7 @@ class DigitPass {
       for (Index i = first; i < last; ++i) ++counts[digit(keys[i], shift)];
     });
   }
-  /// Counts → first places: smaller digits come first, and earlier chunks within a digit.
+  /// Turns counts into first places: smaller digits come first, and earlier chunks within a digit.
   void scan() const {
     Index sum = 0;
     for (Index d = 0; d < kDigits; ++d) {
@@ -103,9 +104,12 @@ inline void sort_by_key(const char* name, View<std::uint64_t> keys, View<Index> 
       key_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << key_bits) - 1;
   if (n < detail::kComparisonSortBelow) return detail::sort_few(keys, values, mask);
 
+  // The passes go to and fro between the caller's memory and scratch memory. A digit in which no
+  // two keys differ needs no pass.
   View<std::uint64_t> from_keys = keys, to_keys = detail::scratch<std::uint64_t, 8>(n);
   View<Index> from_values = values, to_values = detail::scratch<Index, 9>(n);
   const detail::DigitPass pass(n, mask);
+
   std::uint64_t left = detail::varying_bits(keys) & mask;  // equal digits need no pass
   while (left != 0) {
     const int shift = std::countr_zero(left);
@@ -116,6 +120,8 @@ inline void sort_by_key(const char* name, View<std::uint64_t> keys, View<Index> 
                ? 0
                : left >> (shift + detail::kDigitBits) << (shift + detail::kDigitBits);
   }
+
+  // An odd number of passes ended in the scratch memory.
   if (from_keys.data() != keys.data()) {
     memory::copy(keys.data(), from_keys.data(),
                  static_cast<std::size_t>(n) * sizeof(std::uint64_t));

@@ -1,15 +1,15 @@
 // Tells ThreadSanitizer what oneTBB guarantees: tasks see what was written before they were
 // started, and what they write is seen after they were waited for. The packaged library is not
-// instrumented, so the tool cannot know. Nothing in other compilations.
+// instrumented, so the tool cannot know. In other compilations this file does nothing.
 #pragma once
 
 #if defined(__SANITIZE_THREAD__)
 extern "C" void __tsan_acquire(void* address);
 extern "C" void __tsan_release(void* address);
-/// Asked by the tool at start: no reports about oneTBB's own objects, which its headers put here
-/// and its workers free, about what a loop's task holds before it comes to the fence (its copies
-/// pass between the workers; what the bodies touch is still watched), about workers that still run
-/// at the end, nor about Mesa's software driver.
+/// The tool asks for these suppressions at its start. They silence reports about oneTBB's own
+/// objects, which its headers put here and its workers free; about the copies of a loop's task that
+/// pass between the workers before it comes to the fence (what the bodies touch is still watched);
+/// about workers that still run at the end; and about Mesa's software driver.
 extern "C" __attribute__((used)) inline const char* __tsan_default_suppressions() {
   return "race_top:oneapi/tbb\nrace_top:tbb::detail\nrace_top:bits/atomic_base.h\n"
          "race_top:operator delete[]\nrace_top:kernels/parallel/parallel_for.h\nthread:libtbb\n"

@@ -23,7 +23,7 @@ struct ZoneObjective {
   }
 };
 
-/// What an update of the multipliers leaves.
+/// The state of the constraints after an update of the multipliers.
 struct ZoneState {
   double penalties;
   Real violation;  ///< largest shortfall
@@ -34,6 +34,7 @@ struct CombineZoneStates {
   }
 };
 
+/// The outcome of a Jacobi-preconditioned gradient.
 struct Descent {
   double slope;  ///< gradient · direction
   Real off;      ///< largest |gradient| / a: how far a vertex is from where the forces balance [m]
@@ -44,39 +45,50 @@ struct CombineDescents {
   }
 };
 
+/// The paper's solver; the head of this file has the method and its deviations.
 template <class Team>
 class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
  public:
   using Base = ZoneProblem<Team>;
   using Base::Base;
 
-  /// Returns the number of iterations.
+  /// Minimises and updates the multipliers in turn. Returns the number of iterations.
   ICLOTH_HD int solve() {
     prepare();
     Real omega = 1;
     int k = 0, since_restart = 0;
     for (; k < set_.iterations; ++k) {
+      // The direction of descent tells whether the zone has converged.
       const Descent descent = team_.reduce(
           nv_, Descent{0, 0}, [&](Index i) { return descend(i); }, CombineDescents{});
       const double slope = descent.slope;
       if (state_.violation <= set_.tolerance && descent.off <= set_.tolerance) break;
+
+      // Algorithm 3: the step length comes from a backtracking line search, and a vanishing one
+      // ends the iteration.
       Real step = 1;
       ZoneObjective trial = line_search(slope, step);
       if (step * static_cast<Real>(std::sqrt(slope)) < set_.step_threshold) break;
+
+      // Chebyshev acceleration (Eq. 8) starts again after every shortened step.
       if (!set_.chebyshev || step < 1) since_restart = 0;
       omega = chebyshev_weight(since_restart++, omega);
       move(step, omega);
+
+      // Acceleration may overshoot where constraints switch on and off. The plain step is taken
+      // back then, and the acceleration starts again.
       if (omega != 1) {
         const ZoneObjective accelerated = objective(Real(0));
         if (accelerated.value() <= trial.value()) {
           trial = accelerated;
         } else {
-          // Acceleration may overshoot where constraints switch on and off: it starts again.
           team_.for_each(nv_, [&](Index i) { x_[i] += direction_[i]; });
           trial = objective(Real(0));
           since_restart = 0;
         }
       }
+
+      // Algorithm 2: the multipliers take over what the penalty holds.
       update_multipliers();
       value_ = {state_.penalties, trial.distance};
     }
@@ -89,6 +101,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
       Base::nv_, Base::set_, Base::shortfall_, Base::target_, Base::team_, Base::x_;
   View<Real> trial_ = Base::scratch1_;  ///< shortfalls at the point that objective() was asked for
 
+  /// Starts at the given positions with the multipliers of the last round.
   ICLOTH_HD void prepare() {
     team_.for_each(nv_, [&](Index i) { direction_[i] = Vec3r{}; });
     value_ = objective(Real(0));
@@ -96,12 +109,13 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
         nc_, -set_.offset, [&](Index j) { return shortfall_[j] = trial_[j]; }, Max{});
   }
 
+  /// The penalty term of constraint j with the given shortfall.
   ICLOTH_HD double penalty(Index j, Real shortfall) const {
     const Real t = std::fmax(shortfall + multiplier_[j] / set_.penalty, Real(0));
     return static_cast<double>(Real(0.5) * set_.penalty * t * t);
   }
 
-  /// At x − step · direction; leaves the shortfalls there in `trial`.
+  /// The objective at x − step · direction. The shortfalls there are left in trial_.
   ICLOTH_HD ZoneObjective objective(Real step) const {
     return team_.reduce(
         nc_ + nv_, ZoneObjective{0, 0},
@@ -118,8 +132,10 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
         Sum{});
   }
 
-  /// Jacobi-preconditioned direction of one vertex (Algorithm 3, line 3); returns its slope.
+  /// Computes the Jacobi-preconditioned direction of one vertex (Algorithm 3, line 3) and returns
+  /// its slope.
   ICLOTH_HD Descent descend(Index i) const {
+    // Gradient and diagonal of the Hessian, to which only active constraints contribute pull.
     const Real a = static_cast<Real>(this->weight(i));
     Vec3r gradient = a * (x_[i] - target_[i]);
     Real diagonal = a;
@@ -132,7 +148,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
     return {static_cast<double>(dot(gradient, direction_[i])), norm(gradient) / a};
   }
 
-  /// Backtracking (Eq. 7) from a whole step on.
+  /// Backtracking (Eq. 7), which begins with a whole step.
   ICLOTH_HD ZoneObjective line_search(double slope, Real& step) const {
     ZoneObjective trial = objective(step);
     for (int halvings = 0;
@@ -151,6 +167,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
     return k < 10 ? Real(1) : (k == 10 ? 2 / (2 - rho2) : 4 / (4 - rho2 * last));
   }
 
+  /// Moves all vertices by the step, or by the Chebyshev combination with the iterate before it.
   ICLOTH_HD void move(Real step, Real omega) const {
     team_.for_each(nv_, [&](Index i) {
       const Vec3r old = x_[i], next = old - step * direction_[i];

@@ -12,25 +12,31 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// The dual solver; the head of this file has the method.
 template <class Team>
 class ZoneDual : public ZoneProblem<Team> {
  public:
   using Base = ZoneProblem<Team>;
   using Base::Base;
 
-  /// Iterates until no projected step would change a gap by more than a fifth of δ: then nothing
-  /// is short by more, and nothing is pushed further than needed by more. Returns the iterations.
+  /// Iterates until no projected step would change a gap by more than a fifth of δ: then no
+  /// constraint is short by more, and none is pushed further than needed by more. Returns the
+  /// number of iterations.
   ICLOTH_HD int solve() {
     prepare();
     double t = 1;
     int k = 0;
     for (; k < set_.iterations; ++k) {
+      // A projected gradient step from the extrapolated multipliers; when it changes no gap any
+      // more, its result is the answer.
       positions(y_);
       const Step step = project();
       if (step.largest <= set_.tolerance) {
         team_.for_each(nc_, [&](Index j) { multiplier_[j] = projected_[j]; });
         break;
       }
+
+      // Nesterov's extrapolation, which starts again where it points uphill.
       const bool uphill = step.momentum > 0;
       const double next = uphill ? 1 : 0.5 * (1 + std::sqrt(1 + 4 * t * t));
       const Real beta = uphill ? Real(0) : static_cast<Real>((t - 1) / next);
@@ -53,8 +59,8 @@ class ZoneDual : public ZoneProblem<Team> {
   View<Real> projected_ = Base::shortfall_;  ///< λ⁺; its memory is free until finish()
 
   struct Step {
-    double momentum;  ///< Σ L (y − λ⁺)(λ⁺ − λ)
-    Real largest;     ///< L |λ⁺ − y|
+    double momentum;  ///< Σ L (y − λ⁺)(λ⁺ − λ), positive where the extrapolation points uphill
+    Real largest;  ///< L |λ⁺ − y|
   };
   struct CombineSteps {
     ICLOTH_HD Step operator()(Step a, Step b) const {
@@ -62,7 +68,7 @@ class ZoneDual : public ZoneProblem<Team> {
     }
   };
 
-  /// Bounds L, and the start from the multipliers of the last round.
+  /// Computes the bounds L and starts from the multipliers of the last round.
   ICLOTH_HD void prepare() {
     team_.for_each(nc_, [&](Index j) {
       Real bound = 0;
@@ -82,7 +88,7 @@ class ZoneDual : public ZoneProblem<Team> {
     return sum / static_cast<Real>(this->weight(i));
   }
 
-  /// x(λ)
+  /// Sets x to x(λ).
   ICLOTH_HD void positions(View<const Real> lambda) const {
     team_.for_each(nv_, [&](Index i) {
       Vec3r pull{};
@@ -92,6 +98,7 @@ class ZoneDual : public ZoneProblem<Team> {
     });
   }
 
+  /// Sets λ⁺ from the gaps at x(y), and measures the step that leads to it.
   ICLOTH_HD Step project() const {
     return team_.reduce(
         nc_, Step{0, 0},

@@ -1,4 +1,5 @@
-// From impacts to zones: merges constraints, spreads labels, and loads what the solvers work on.
+// The kernels that lead from impacts to zones: they merge constraints, spread labels, and load the
+// arrays that the solvers work on.
 #pragma once
 
 #include "kernels/impact.h"
@@ -6,7 +7,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Old constraints first, then this round's impacts as new constraints.
+/// Lists the old constraints first, then this round's impacts as new constraints.
 struct Concatenate {
   View<const KeptImpact> old;
   View<const Impact> impacts;
@@ -23,7 +24,8 @@ struct Concatenate {
   }
 };
 
-/// The last of equal keys is the newest: its normal and weights replace the old ones.
+/// Keeps the last one of equal keys, which is the newest: its normal and weights replace the old
+/// ones.
 struct IsNewest {
   View<const KeptImpact> sorted;
   ICLOTH_HD bool operator()(Index i) const {
@@ -31,6 +33,7 @@ struct IsNewest {
   }
 };
 
+/// Copies the newest constraint of each key.
 struct TakeNewest {
   View<const KeptImpact> sorted;
   View<const Index> picked;
@@ -43,7 +46,7 @@ struct TakeNewest {
   }
 };
 
-/// Vertex number of each corner that can move.
+/// The vertex number of each corner that can move.
 struct FreeCorners {
   View<const KeptImpact> kept;
   View<const Real> inverse_mass;
@@ -56,11 +59,13 @@ struct FreeCorners {
   }
 };
 
+/// Keeps the vertices that belong to at least one constraint.
 struct HasEntries {
   View<const Index> first;
   ICLOTH_HD bool operator()(Index i) const { return first[i + 1] > first[i]; }
 };
 
+/// Numbers the active vertices; the number of a vertex is its slot and its first label.
 struct NumberSlots {
   View<const Index> active;
   View<Index> slot_of, label;
@@ -80,7 +85,7 @@ struct ToSlots {
   }
 };
 
-/// Smallest label among the corners of a constraint.
+/// The smallest label among the corners of a constraint.
 struct ConstraintLabels {
   View<const Int4> slots;
   View<const Index> label;
@@ -93,7 +98,9 @@ struct ConstraintLabels {
   }
 };
 
-/// Smallest label among the constraints of a vertex, then a jump to that label's own label.
+/// The smallest label among the constraints of a vertex, followed by a jump to that label's own
+/// label. Returns 1 where the label changed. Repeated until nothing changes, this labels connected
+/// components.
 struct VertexLabels {
   View<const Index> first, entries, constraint_label, label;
   View<Index> next;
@@ -109,6 +116,7 @@ struct VertexLabels {
   }
 };
 
+/// The keys that sort vertices by zone.
 struct LabelKeys {
   View<const Index> label;
   View<std::uint64_t> keys;
@@ -119,18 +127,20 @@ struct LabelKeys {
   }
 };
 
+/// Keeps the first position of each range of equal keys.
 struct StartsRange {
   View<const std::uint64_t> keys;
   ICLOTH_HD bool operator()(Index i) const { return i == 0 || keys[i] != keys[i - 1]; }
 };
 
+/// Sets the last entry of a list.
 struct SetLast {
   View<Index> list;
   Index value;
   ICLOTH_HD void operator()(Index) const { list[list.size() - 1] = value; }
 };
 
-/// Loads the vertices in zone order.
+/// Loads the vertices in the order of their zones.
 struct LoadVertices {
   View<const Index> order, old_active;
   View<const Vec3r> x1, candidate;
@@ -148,6 +158,7 @@ struct LoadVertices {
   }
 };
 
+/// Loads the constraints in the order of their zones, with corners renumbered to the new slots.
 struct LoadConstraints {
   View<const Index> order, new_slot;
   View<const KeptImpact> kept;

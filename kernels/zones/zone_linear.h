@@ -11,18 +11,20 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// The linear solver; the head of this file has the method.
 template <class Team>
 class ZoneLinear : public ZoneProblem<Team> {
  public:
   using Base = ZoneProblem<Team>;
   using Base::Base;
 
-  /// Iterates until no constraint is off by more than a fifth of δ. Returns the iterations.
+  /// Iterates until no constraint is off by more than a fifth of δ. Returns the number of
+  /// iterations.
   ICLOTH_HD int solve() {
     Norms norms = start();
     int k = 0;
     for (; k < set_.iterations && norms.largest > set_.tolerance; ++k) {
-      // u = a⁻¹ Jᵀ p
+      // The product q = J a⁻¹ Jᵀ p is made in two halves, of which the first is u = a⁻¹ Jᵀ p.
       team_.for_each(nv_, [&](Index i) {
         Vec3r sum{};
         this->for_constraints(
@@ -36,7 +38,10 @@ class ZoneLinear : public ZoneProblem<Team> {
             return static_cast<double>(p_[j]) * static_cast<double>(q_[j]);
           },
           Sum{});
-      if (!(pq > 0)) break;  // the rest of the residual cannot be removed
+
+      // Without curvature along p the rest of the residual cannot be removed. Otherwise this is the
+      // step of conjugate gradients along p.
+      if (!(pq > 0)) break;
       const Real alpha = static_cast<Real>(norms.square / pq);
       const double before = norms.square;
       norms = team_.reduce(
@@ -47,9 +52,13 @@ class ZoneLinear : public ZoneProblem<Team> {
             return norms_of(j);
           },
           CombineNorms{});
+
+      // The next direction is conjugate to the last one.
       const Real beta = static_cast<Real>(norms.square / before);
       team_.for_each(nc_, [&](Index j) { p_[j] = r_[j] + beta * p_[j]; });
     }
+
+    // The positions follow from the multipliers: x = x* + a⁻¹ Jᵀ λ.
     team_.for_each(nv_, [&](Index i) {
       Vec3r sum{};
       this->for_constraints(
@@ -66,6 +75,7 @@ class ZoneLinear : public ZoneProblem<Team> {
   View<Real> p_ = Base::scratch1_;   ///< search direction
   View<Real> q_ = Base::scratch2_;   ///< J a⁻¹ Jᵀ p
 
+  /// The residual: the sum of its squares, and its largest entry [m].
   struct Norms {
     double square;
     Real largest;
@@ -76,7 +86,7 @@ class ZoneLinear : public ZoneProblem<Team> {
     }
   };
 
-  /// Σ w u over the free corners.
+  /// The gap vector Σ w u over the free corners.
   ICLOTH_HD Vec3r gap_vector(Index j, View<const Vec3r> u) const {
     Vec3r sum{};
     for (int a = 0; a < 4; ++a) {
@@ -91,7 +101,7 @@ class ZoneLinear : public ZoneProblem<Team> {
     return {r * r, std::fabs(r_[j])};
   }
 
-  /// λ = 0, p = r = d − J x*
+  /// Starts from λ = 0, where p = r = d − J x*.
   ICLOTH_HD Norms start() const {
     return team_.reduce(
         nc_, Norms{0, 0},

@@ -1,4 +1,5 @@
-// An impact zone as a problem for a team: what every solver of zones reads, writes and reports.
+// An impact zone as a problem for a team: the quantities that every solver of zones reads, writes
+// and reports.
 //
 //   minimise ½ Σ a_i |x_i − x*_i|²  subject to  n_j·g_j(x) ≥ δ
 //
@@ -12,6 +13,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// One constraint n·g(x) ≥ δ of a zone.
 struct ZoneConstraint {
   Stencil s;     ///< obstacle vertices included
   Int4 slot;     ///< active vertex number of each corner, kNone where it cannot move
@@ -28,7 +30,7 @@ struct ZoneSettings {
   bool chebyshev;
 };
 
-/// How far the end of a solve is from the conditions of an optimum (Karush, Kuhn and Tucker).
+/// The distance of the end of a solve from the conditions of an optimum (Karush, Kuhn and Tucker).
 struct ZoneResult {
   Index iterations;
   Real violation;        ///< largest δ − n·g, 0 if none [m]
@@ -57,15 +59,17 @@ struct ZoneArrays {
   View<const Real> mass;               ///< of the active vertices [kg]
   View<const Vec3r> fixed;             ///< end-of-step positions of all vertices, for obstacles [m]
   View<const Vec3r> start;             ///< start-of-step positions of all vertices [m]
-  View<Vec3r> x, before, direction;    ///< result; what a solver needs beside it [m] (active)
+  View<Vec3r> x;                       ///< start, then result [m] (active vertices)
+  View<Vec3r> before, direction;       ///< each solver gives them a meaning of its own [m] (active)
   View<Real> multiplier;               ///< λ_j: last round's, then the result [m] (constraints)
   View<Real> shortfall;                ///< δ − n·g(x) of the result [m] (constraints)
   View<Real> scratch1, scratch2;  ///< each solver gives them a meaning of its own (constraints)
   View<ZoneResult> result;        ///< (zones)
 };
 
-/// One zone's share of the buffers, with vertices and constraints numbered within the zone. What is
-/// read and written all the time is borrowed: shared memory on CUDA.
+/// One zone's share of the buffers, with vertices and constraints numbered within the zone. The
+/// buffers that are read and written all the time are borrowed, which puts them into shared memory
+/// on CUDA.
 template <class Team>
 class ZoneProblem {
  public:
@@ -140,6 +144,7 @@ class ZoneProblem {
   /// The minimum keeps the momentum of a zone that touches nothing fixed, but an iteration ends
   /// before, and not every step keeps it. Moving the zone back as a whole changes no gap.
   ICLOTH_HD void restore_momentum() const {
+    // A zone that touches something fixed may exchange momentum with it.
     const Index fixed = team_.reduce(
         nc_, Index{0},
         [&](Index j) {
@@ -147,6 +152,8 @@ class ZoneProblem {
         },
         Sum{});
     if (fixed != 0) return;
+
+    // The rest of the momentum goes to all vertices in equal displacements.
     const ZoneMomentum sum = team_.reduce(
         nv_, ZoneMomentum{0, {}},
         [&](Index i) {
@@ -181,7 +188,7 @@ class ZoneProblem {
       return {Max{}(a.violation, b.violation), Max{}(a.complementarity, b.complementarity)};
     }
   };
-  /// Σ of moved momentum less what the constraints gave it, and of its absolute values.
+  /// The sum of the moved momentum less what the constraints gave, and of its absolute values.
   struct Balance {
     Vec3d left;
     double moved;
@@ -190,7 +197,9 @@ class ZoneProblem {
     }
   };
 
+  /// Measures how far x and λ are from an optimum, and leaves the shortfalls of the result.
   ICLOTH_HD ZoneResult residuals(int iterations) const {
+    // Primal feasibility and complementarity are measured constraint by constraint.
     const Residuals r = team_.reduce(
         nc_, Residuals{0, 0},
         [&](Index j) {
@@ -200,6 +209,9 @@ class ZoneProblem {
           return Residuals{s, std::fmax(std::fmin(multiplier_[j], slack), -multiplier_[j])};
         },
         LargerResiduals{});
+
+    // The balance of momentum compares the displacement of the vertices with the impulses of the
+    // constraints. Corners that cannot move take impulses that do not count.
     const Balance b = team_.reduce(
         nv_ + nc_, Balance{{}, 0},
         [&](Index k) {

@@ -1,4 +1,4 @@
-// Solves impact zones: one team a zone, by the solver that was chosen.
+// Solving impact zones: one team a zone, by the solver that was chosen.
 #pragma once
 
 #include "kernels/zones/zone_augmented_lagrangian.h"
@@ -10,6 +10,7 @@ namespace icloth::ICLOTH_BUILD {
 /// Zones with more active vertices than this are solved by the whole device, one after the other.
 inline constexpr Index kLargestTeamZone = 2048;
 
+/// Solves every zone that is small enough for a team.
 template <template <class> class Solver>
 struct SolveZone {
   ZoneArrays z;
@@ -27,6 +28,7 @@ struct SolveZone {
   }
 };
 
+/// Solves one large zone with the whole device.
 template <template <class> class Solver>
 struct SolveLargeZone {
   SolveZone<Solver> solver;
