@@ -304,28 +304,28 @@ template <class Pairs>
 void HashPairs::run(const char* name, const Pairs& pairs, Array<Pair>& list, Candidates& out) {
   const Index n = pairs.box.size();
   const Grid grid = make_grid(pairs.box);
-  offset_.resize(n + 1);
-  for_each("broad_phase.cells", n, CountCells{pairs.box, grid, offset_.view().sub(0, n)});
+  entry_first_.resize(n + 1);
+  for_each("broad_phase.cells", n, CountCells{pairs.box, grid, entry_first_.view().sub(0, n)});
   compact("broad_phase.large", n, IsLarge{pairs.box, grid}, large_);
   const Index entries =
-      exclusive_scan("broad_phase.cells", offset_.view().sub(0, n), offset_.view());
+      exclusive_scan("broad_phase.cells", entry_first_.view().sub(0, n), entry_first_.view());
   key_.resize(entries);
   element_.resize(entries);
   for_each("broad_phase.cells", n,
-           WriteCells{pairs.box, grid, offset_.view(), key_.view(), element_.view()});
+           WriteCells{pairs.box, grid, entry_first_.view(), key_.view(), element_.view()});
   sort_by_key("broad_phase.sort", key_.view(), element_.view(), 3 * kBits);
   const Index cells = compact("broad_phase.cells", entries, StartsCell{key_.view()}, cell_first_);
   cell_first_.resize_keep(cells + 1);
   for_each("broad_phase.cells", 1, SetEnd{cell_first_.view(), entries});
 
-  offset_.resize(cells + 1);
+  item_first_.resize(cells + 1);
   for_each("broad_phase.work", cells,
-           CountItems<Pairs>{pairs, cell_first_.view(), element_.view(), offset_.view()});
+           CountItems<Pairs>{pairs, cell_first_.view(), element_.view(), item_first_.view()});
   const Index items =
-      exclusive_scan("broad_phase.work", offset_.view().sub(0, cells), offset_.view());
+      exclusive_scan("broad_phase.work", item_first_.view().sub(0, cells), item_first_.view());
   collect(name, items,
           TestItem<Pairs>{pairs, grid, key_.view(), cell_first_.view(), element_.view(),
-                          offset_.view()},
+                          item_first_.view()},
           list);
   out.box_tests += std::int64_t{items} * kTestsPerItem;
   if (large_.empty()) return;
@@ -351,9 +351,9 @@ void HashPairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
   find(mesh, boxes, out);
   const DirtyVertices vertex{dirty};
   const auto keep = [&](Array<Pair>& list, const auto& is_dirty) {
-    const Index count = compact("broad_phase.dirty", list.size(), is_dirty, large_);
+    const Index count = compact("broad_phase.dirty", list.size(), is_dirty, kept_);
     found_.resize(count);
-    for_each("broad_phase.dirty", count, PickPairs{list.view(), large_.view(), found_.view()});
+    for_each("broad_phase.dirty", count, PickPairs{list.view(), kept_.view(), found_.view()});
     swap(list, found_);
   };
   keep(out.vertex_faces,

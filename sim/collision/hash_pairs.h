@@ -26,9 +26,11 @@ class HashPairs {
 
   Array<std::uint64_t> key_;  ///< cell of each entry, sorted
   Array<Index> element_;      ///< of each entry
-  Array<Index> offset_;       ///< first entry of each element, then first work item of each cell
+  Array<Index> entry_first_;  ///< first entry of each element, and the end
   Array<Index> cell_first_;   ///< first entry of each cell, and the end
+  Array<Index> item_first_;   ///< first work item of each cell, and the end
   Array<Index> large_;        ///< elements that are in no cell
+  Array<Index> kept_;         ///< numbers of the pairs with a dirty vertex, find_dirty
   Array<Pair> found_;
 };
 

@@ -22,7 +22,8 @@ struct CoarseBlocks {
   View<const Index> row, column;  ///< of the finer level
   const Real* entries;            ///< likewise
   View<const Real> live;          ///< of its rows: 0 for prescribed ones
-  View<const Index> source_first, source;
+  View<const Index> source_first;
+  View<const BlockSource> source;
   View<Mat3r> value;
   Index first;
 
@@ -30,10 +31,10 @@ struct CoarseBlocks {
     const Index block = first + k;
     Mat3r sum{};
     for (Index s = source_first[block]; s < source_first[block + 1]; ++s) {
-      const Index from = source[s] / 2;
+      const Index from = source[s].block;
       if (!(live[row[from]] > 0) || !(live[column[from]] > 0)) continue;
       const Real* m = entries + 9 * static_cast<std::ptrdiff_t>(from);
-      if (source[s] % 2 == 0)
+      if (source[s].transposed == 0)
         for (int e = 0; e < 9; ++e) sum.m[e] += m[e];
       else
         for (int e = 0; e < 9; ++e) sum.m[e] += m[3 * (e % 3) + e / 3];
@@ -143,7 +144,8 @@ void append_places(const std::vector<Index>& value, Index values, Index offset,
 struct Layout {
   std::vector<Index> child_first{0}, child, parent;
   std::vector<Index> row_first{0}, column;
-  std::vector<Index> source_first{0}, source;
+  std::vector<Index> source_first{0};
+  std::vector<BlockSource> source;
 
   Index nodes() const { return static_cast<Index>(row_first.size()) - 1; }
   Index blocks() const { return static_cast<Index>(column.size()); }
@@ -153,7 +155,8 @@ struct Layout {
   void append_sources(const std::vector<Index>& fine_first, const std::vector<Index>& fine_columns,
                       Index offset, const std::vector<Index>& group,
                       const std::vector<Index>& first, const std::vector<Index>& columns) {
-    std::vector<Index> target, code;
+    std::vector<Index> target;           // coarse block of each contribution …
+    std::vector<BlockSource> contribution;  // … and the contribution itself
     const std::vector<Index> fine_row = rows_of_blocks(fine_first);
     for (std::size_t k = 0; k < fine_columns.size(); ++k) {
       const Index i = fine_row[k], j = fine_columns[k];
@@ -163,16 +166,22 @@ struct Layout {
       const auto found = std::lower_bound(columns.begin() + first[row],
                                           columns.begin() + first[row + 1], std::max(from, to));
       const Index block = static_cast<Index>(found - columns.begin());
-      const Index number = 2 * (offset + static_cast<Index>(k));
-      if (from <= to) target.push_back(block), code.push_back(number);
-      if (from > to || (from == to && i != j)) target.push_back(block), code.push_back(number + 1);
+      const Index number = offset + static_cast<Index>(k);
+      if (from <= to) {
+        target.push_back(block);
+        contribution.push_back({number, 0});
+      }
+      if (from > to || (from == to && i != j)) {
+        target.push_back(block);
+        contribution.push_back({number, 1});
+      }
     }
     std::vector<Index> place;
     const Index before = source_first.back();
     std::vector<Index> local{0};
     append_places(target, static_cast<Index>(columns.size()), 0, local, place);
     for (std::size_t b = 1; b < local.size(); ++b) source_first.push_back(before + local[b]);
-    for (const Index k : place) source.push_back(code[static_cast<std::size_t>(k)]);
+    for (const Index k : place) source.push_back(contribution[static_cast<std::size_t>(k)]);
   }
 
   void append_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {

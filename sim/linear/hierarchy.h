@@ -7,6 +7,12 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// A block of the finer level that adds to a block of a coarser one.
+struct BlockSource {
+  Index block;       ///< its number in the finer level's storage
+  Index transposed;  ///< 1: it adds its transpose, as it lies below the diagonal; 0: itself
+};
+
 class Hierarchy {
  public:
   /// The pattern is the upper half of the matrix, the diagonal first in each row. Groups follow the
@@ -22,7 +28,6 @@ class Hierarchy {
   /// `inverse_diagonal`: of the finest matrix. Valid until the next call of a member.
   Multilevel view(const SystemView& system, View<const Mat3r> inverse_diagonal);
 
-  int levels() const { return levels_; }
   /// What one application reads and writes at least [B].
   double bytes() const;
 
@@ -36,8 +41,8 @@ class Hierarchy {
   Array<Index> vertex_row_;                            ///< row of each block of the system's matrix
   Array<Index> node_row_;                              ///< row of each block of matrix_
   BlockMatrix matrix_;
-  /// What adds up to a block of matrix_: 2 × block of the finer level, + 1 where it is transposed.
-  Array<Index> source_first_, source_;
+  Array<Index> source_first_;    ///< first source of each block of matrix_, and the end
+  Array<BlockSource> source_;    ///< the finer blocks that add up to each block of matrix_
   Array<Real> mass_;         ///< of the free vertices (nodes), fill_matrix
   Array<Mat3r> diagonal_;    ///< blocks without contacts (nodes), fill_matrix
   CoarseCouplings coupled_;  ///< of the finest level, fill_contacts
