@@ -27,9 +27,12 @@ struct Paths {
 
 Paths make_paths(const StepContext& step, bool predicted) {
   const Array<Vec3r>& to = predicted ? step.state.v : step.state.x1;
-  return {
-      step.state.x0.view(),    to.view(), predicted, step.dt, (step.dt * step.dt) * step.gravity(),
-      step.mesh.cloth_vertices};
+  return {.from = step.state.x0.view(),
+          .to = to.view(),
+          .predicted = predicted,
+          .dt = step.dt,
+          .fall = (step.dt * step.dt) * step.gravity(),
+          .cloth_vertices = step.mesh.cloth_vertices};
 }
 
 /// Trusted region of a vertex.

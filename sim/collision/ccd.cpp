@@ -88,8 +88,12 @@ void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std:
                bool incremental) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
-  const ImpactTest base{s.x0.view(), s.x1.view(), s.inverse_mass.view(),
-                        dirty,       incremental, 0.25 * static_cast<double>(step.offset())};
+  const ImpactTest base{.x0 = s.x0.view(),
+                        .x1 = s.x1.view(),
+                        .inverse_mass = s.inverse_mass.view(),
+                        .dirty = dirty,
+                        .incremental = incremental,
+                        .separation = 0.25 * static_cast<double>(step.offset())};
   impacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
   const Array<Pair>& ee = broad_phase.edge_edges();

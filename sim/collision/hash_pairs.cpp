@@ -324,8 +324,12 @@ void HashPairs::run(const char* name, const Pairs& pairs, Array<Pair>& list, Can
   const Index items =
       exclusive_scan("broad_phase.work", item_first_.view().sub(0, cells), item_first_.view());
   collect(name, items,
-          TestItem<Pairs>{pairs, grid, key_.view(), cell_first_.view(), element_.view(),
-                          item_first_.view()},
+          TestItem<Pairs>{.pairs = pairs,
+                          .grid = grid,
+                          .key = key_.view(),
+                          .cell_first = cell_first_.view(),
+                          .element = element_.view(),
+                          .item_first = item_first_.view()},
           list);
   out.box_tests += std::int64_t{items} * kTestsPerItem;
   if (large_.empty()) return;

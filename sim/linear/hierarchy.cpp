@@ -155,7 +155,7 @@ struct Layout {
   void append_sources(const std::vector<Index>& fine_first, const std::vector<Index>& fine_columns,
                       Index offset, const std::vector<Index>& group,
                       const std::vector<Index>& first, const std::vector<Index>& columns) {
-    std::vector<Index> target;           // coarse block of each contribution …
+    std::vector<Index> target;              // coarse block of each contribution …
     std::vector<BlockSource> contribution;  // … and the contribution itself
     const std::vector<Index> fine_row = rows_of_blocks(fine_first);
     for (std::size_t k = 0; k < fine_columns.size(); ++k) {
@@ -235,19 +235,30 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
 
 void Hierarchy::fill_matrix(const SystemView& system) {
   for (int l = 0; l < levels_; ++l) {
-    CoarseBlocks sum{vertex_row_.view(),   system.column,        system.entries,
-                     system.inverse_mass,  source_first_.view(), source_.view(),
-                     matrix_.value.view(), blocks_[l].first};
+    CoarseBlocks sum{.row = vertex_row_.view(),
+                     .column = system.column,
+                     .entries = system.entries,
+                     .live = system.inverse_mass,
+                     .source_first = source_first_.view(),
+                     .source = source_.view(),
+                     .value = matrix_.value.view(),
+                     .first = blocks_[l].first};
     if (l > 0) {
-      sum.row = node_row_.view(), sum.column = matrix_.column.view();
+      sum.row = node_row_.view();
+      sum.column = matrix_.column.view();
       sum.entries = matrix_.value.view().data()->m;
       sum.live = mass_.view();
     }
     for_each("implicit.coarse_blocks", blocks_[l].count, sum);
     for_each("implicit.coarse_masses", level_[l].count,
-             AddMass{child_first_.view(), child_.view(),
-                     l == 0 ? system.inverse_mass : View<const Real>{}, matrix_.row_first.view(),
-                     matrix_.value.view(), diagonal_.view(), mass_.view(), level_[l].first});
+             AddMass{.child_first = child_first_.view(),
+                     .child = child_.view(),
+                     .inverse_mass = l == 0 ? system.inverse_mass : View<const Real>{},
+                     .row_first = matrix_.row_first.view(),
+                     .value = matrix_.value.view(),
+                     .diagonal = diagonal_.view(),
+                     .mass = mass_.view(),
+                     .first = level_[l].first});
   }
 }
 
@@ -255,14 +266,26 @@ void Hierarchy::fill_contacts(const SystemView& system) {
   if (levels_ == 0) return;
   coupled_.fill(system, group_.view(), level_[0].count);
   for_each("implicit.coarse_nodes", level_[0].count,
-           FinishFirstLevel{child_first_.view(), child_.view(), system.inverse_mass,
-                            system.couplings, coupled_.rows(), mass_.view(), diagonal_.view(),
-                            lumped_.view(), smoother_.view()});
+           FinishFirstLevel{.child_first = child_first_.view(),
+                            .child = child_.view(),
+                            .inverse_mass = system.inverse_mass,
+                            .couplings = system.couplings,
+                            .coupled = coupled_.rows(),
+                            .mass = mass_.view(),
+                            .diagonal = diagonal_.view(),
+                            .lumped = lumped_.view(),
+                            .smoother = smoother_.view()});
   for (int l = 1; l < levels_; ++l)
     for_each("implicit.coarse_nodes", level_[l].count,
-             FinishLevel{child_first_.view(), child_.view(), matrix_.row_first.view(), mass_.view(),
-                         diagonal_.view(), matrix_.value.view(), lumped_.view(), smoother_.view(),
-                         level_[l].first});
+             FinishLevel{.child_first = child_first_.view(),
+                         .child = child_.view(),
+                         .row_first = matrix_.row_first.view(),
+                         .mass = mass_.view(),
+                         .diagonal = diagonal_.view(),
+                         .value = matrix_.value.view(),
+                         .lumped = lumped_.view(),
+                         .smoother = smoother_.view(),
+                         .first = level_[l].first});
 }
 
 Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_diagonal) {
@@ -270,11 +293,15 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.inverse_diagonal = inverse_diagonal;
   m.inverse_mass = system.inverse_mass;
   m.group = group_.view();
-  m.child_first = child_first_.view(), m.child = child_.view(), m.parent = parent_.view();
+  m.child_first = child_first_.view();
+  m.child = child_.view();
+  m.parent = parent_.view();
   m.matrix = matrix_.view();
   m.coupled = coupled_.rows();
   m.smoother = smoother_.view();
-  m.b = b_.view(), m.z = z_.view(), m.t = t_.view();
+  m.b = b_.view();
+  m.z = z_.view();
+  m.t = t_.view();
   std::copy_n(level_, Multilevel::kMaxLevels, m.level);
   m.levels = levels_;
   return m;

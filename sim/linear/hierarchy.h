@@ -41,13 +41,13 @@ class Hierarchy {
   Array<Index> vertex_row_;                            ///< row of each block of the system's matrix
   Array<Index> node_row_;                              ///< row of each block of matrix_
   BlockMatrix matrix_;
-  Array<Index> source_first_;    ///< first source of each block of matrix_, and the end
-  Array<BlockSource> source_;    ///< the finer blocks that add up to each block of matrix_
-  Array<Real> mass_;         ///< of the free vertices (nodes), fill_matrix
-  Array<Mat3r> diagonal_;    ///< blocks without contacts (nodes), fill_matrix
-  CoarseCouplings coupled_;  ///< of the finest level, fill_contacts
-  Array<Mat3r> lumped_;      ///< couplings on each node (nodes), fill_contacts
-  Array<Mat3r> smoother_;    ///< see Multilevel (nodes), fill_contacts
+  Array<Index> source_first_;  ///< first source of each block of matrix_, and the end
+  Array<BlockSource> source_;  ///< the finer blocks that add up to each block of matrix_
+  Array<Real> mass_;           ///< of the free vertices (nodes), fill_matrix
+  Array<Mat3r> diagonal_;      ///< blocks without contacts (nodes), fill_matrix
+  CoarseCouplings coupled_;    ///< of the finest level, fill_contacts
+  Array<Mat3r> lumped_;        ///< couplings on each node (nodes), fill_contacts
+  Array<Mat3r> smoother_;      ///< see Multilevel (nodes), fill_contacts
   Array<Vec3r> b_, z_, t_;
 };
 

@@ -177,11 +177,21 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   contact_.resize(couplings);
   solution_.resize(1);
   const auto iterate = [&](const auto& preconditioner, int max_iterations) {
-    with_device_team("implicit.solve", std::max(n, couplings),
-                     ConjugateGradients<std::decay_t<decltype(preconditioner)>>{
-                         system, preconditioner, b, padded.sub(0, n), r_.view().sub(0, n),
-                         z_.view().sub(0, n), p_.view(), q_.view(), best_.view(), contact_.view(),
-                         options.tolerance, max_iterations, solution_.view()});
+    with_device_team(
+        "implicit.solve", std::max(n, couplings),
+        ConjugateGradients<std::decay_t<decltype(preconditioner)>>{.system = system,
+                                                                   .precondition = preconditioner,
+                                                                   .b = b,
+                                                                   .x = padded.sub(0, n),
+                                                                   .r = r_.view().sub(0, n),
+                                                                   .z = z_.view().sub(0, n),
+                                                                   .p = p_.view(),
+                                                                   .q = q_.view(),
+                                                                   .best = best_.view(),
+                                                                   .contact = contact_.view(),
+                                                                   .tolerance = options.tolerance,
+                                                                   .max_iterations = max_iterations,
+                                                                   .solution = solution_.view()});
   };
   const auto finish = [&] {
     LinearSolution solution;

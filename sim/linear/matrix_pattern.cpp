@@ -30,8 +30,12 @@ void BlockMatrix::set_pattern(const std::vector<Index>& first, const std::vector
 }
 
 MatrixView BlockMatrix::view() const {
-  return {row_first.view(),    column.view(),      lower_first.view(),
-          lower_column.view(), lower_block.view(), value.view().data()->m};
+  return {.row_first = row_first.view(),
+          .column = column.view(),
+          .lower_first = lower_first.view(),
+          .lower_column = lower_column.view(),
+          .lower_block = lower_block.view(),
+          .entries = value.view().data()->m};
 }
 
 }  // namespace icloth::ICLOTH_BUILD
