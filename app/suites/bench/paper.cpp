@@ -4,8 +4,8 @@
 
 #include "app/suites/bench/frames.h"
 #include "app/suites/bench/suite.h"
+#include "app/suites/bench/zone_trial.h"
 #include "app/suites/report/report.h"
-#include "sim/collision/zone_trial.h"
 
 namespace icloth {
 namespace {
@@ -154,7 +154,7 @@ void compare_with_optimum(Report& report) {
       table.add({std::to_string(trial.vertices), std::to_string(trial.constraints), name,
                  std::to_string(trial.iterations), format_number(trial.objective / optimum, 6),
                  format_number(trial.violation, 3), format_number(trial.complementarity, 3),
-                 format_number(trial.momentum, 2), format_number(trial.milliseconds, 3)});
+                 format_number(trial.momentum_residual, 2), format_number(trial.milliseconds, 3)});
     }
   }
   report.add(table);

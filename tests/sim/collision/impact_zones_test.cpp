@@ -10,7 +10,6 @@
 #include <map>
 #include <numeric>
 
-#include "sim/collision/zone_trial.h"
 #include "sim/simulator.h"
 #include "tests/support/stage_support.h"
 
@@ -283,26 +282,6 @@ TEST(ImpactZones, PlainGradientStepsReachTheConstraintsToo) {
   const std::vector<Vec3r> x1 = c.stage.state.x1.download();
   for (const Impact& impact : impacts)
     EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.impact_zones.offset);
-}
-
-/// Sheets that pass through each other: the dual solver ends at the optimum, the paper's comes near
-/// it in its 100 iterations.
-TEST(ImpactZones, DualSolverFindsTheOptimum) {
-  for (const Index side : {5, 15, 50}) {
-    const double optimum = cpu64::solve_zone_trial(side, ZoneSolver::dual, 10000).objective;
-    const ZoneTrial dual = solve_zone_trial(side, ZoneSolver::dual, 100);
-    const ZoneTrial paper = solve_zone_trial(side, ZoneSolver::augmented_lagrangian, 100);
-    const Parameters defaults;
-    EXPECT_LE(dual.violation, 0.2 * defaults.impact_zones.offset);
-    EXPECT_LT(paper.violation, defaults.impact_zones.offset)
-        << "no penetration, but not converged either";
-    for (const ZoneTrial& trial : {dual, paper}) EXPECT_LT(trial.momentum_residual, 1e-4);
-    EXPECT_LE(dual.complementarity, 0.2 * defaults.impact_zones.offset);
-    EXPECT_NEAR(dual.objective, optimum, 0.01 * optimum) << side;
-    EXPECT_GT(paper.objective, 0.99 * optimum);
-    EXPECT_LT(paper.objective, 1.5 * optimum);
-    EXPECT_LT(dual.iterations, 20);
-  }
 }
 
 }  // namespace

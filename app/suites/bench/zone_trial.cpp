@@ -1,4 +1,4 @@
-#include "sim/collision/zone_trial.h"
+#include "app/suites/bench/zone_trial.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +19,8 @@ struct TrialZone {
   std::vector<Int4> slot;
 };
 
+/// Makes the two sheets and one constraint between each vertex of the lower one and the face of the
+/// upper one that it has passed.
 TrialZone make_zone(Index side) {
   std::mt19937 random(42);  // its numbers are the same everywhere; those of distributions are not
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -29,13 +31,17 @@ TrialZone make_zone(Index side) {
         zone.position.push_back(convert<Real>(Vec3d{kSpacing * (i + jitter * uniform()), height,
                                                     kSpacing * (k + jitter * uniform())}));
   };
+
   add_sheet(0.5 * kDepth, 0);
   add_sheet(-0.5 * kDepth, 0.9);
+
   for (Index i = 0; i + 1 < side; ++i) {
     for (Index k = 0; k + 1 < side; ++k) {
       const Index v = side * side + i * side + k, corner = i * side + k;
       const Vec3d p = convert<double>(zone.position[static_cast<std::size_t>(v)]);
       const double s = p.x / kSpacing - i, t = p.z / kSpacing - k;  // place in the cell below
+
+      // The cell is split into two faces by its diagonal; the weights are barycentric in the face.
       const bool first = s >= t;
       ZoneConstraint c;
       c.s.v[0] = v, c.s.v[1] = corner, c.s.v[3] = corner + side + 1;
@@ -43,8 +49,10 @@ TrialZone make_zone(Index side) {
       const double w[3] = {1 - std::max(s, t), std::fabs(s - t), std::min(s, t)};
       c.s.w[0] = 1;
       for (int a = 0; a < 3; ++a) c.s.w[a + 1] = static_cast<Real>(-w[a]);
+
+      // Every vertex of the zone can move, and the normals are tilted by up to 9° each way.
+      const double tilt = 0.3;
       for (int a = 0; a < 4; ++a) c.slot.v[a] = c.s.v[a];
-      const double tilt = 0.3;  // ±9°
       c.normal =
           convert<Real>(normalized(Vec3d{tilt * (uniform() - 0.5), 1, tilt * (uniform() - 0.5)}));
       zone.constraint.push_back(c);
@@ -58,13 +66,13 @@ ZoneSettings make_settings(int iterations) {
   const Parameters p;
   const Real offset = static_cast<Real>(p.impact_zones.offset);
   // In double precision the trial is the reference: it goes on until nothing moves.
-  return {offset,
-          sizeof(Real) == 8 ? Real(1e-10) * offset : Real(0.2) * offset,
-          iterations,
-          static_cast<Real>(p.impact_zones.penalty),
-          static_cast<Real>(p.impact_zones.rho),
-          static_cast<Real>(p.impact_zones.step_threshold),
-          p.impact_zones.chebyshev};
+  return {.offset = offset,
+          .tolerance = sizeof(Real) == 8 ? Real(1e-10) * offset : Real(0.2) * offset,
+          .iterations = iterations,
+          .penalty = static_cast<Real>(p.impact_zones.penalty),
+          .rho = static_cast<Real>(p.impact_zones.rho),
+          .step_threshold = static_cast<Real>(p.impact_zones.step_threshold),
+          .chebyshev = p.impact_zones.chebyshev};
 }
 
 /// One zone in the memory of the device.
@@ -74,6 +82,8 @@ class Trial {
     const TrialZone zone = make_zone(side);
     nv_ = static_cast<Index>(zone.position.size());
     nc_ = static_cast<Index>(zone.constraint.size());
+
+    // All vertices want to stay where they have passed through each other.
     target_.upload(zone.position);
     x_.upload(zone.position);
     constraints_.upload(zone.constraint);
@@ -81,25 +91,37 @@ class Trial {
     incidence_.build(slots_.view(), nv_);
     vertex_first_.upload(std::vector<Index>{0, nv_});
     constraint_first_.upload(std::vector<Index>{0, nc_});
+
+    // Equal masses, and no multipliers from an earlier round.
     mass_.resize(nv_);
     mass_.fill(Real(5e-6));
     for (Array<Vec3r>* a : {&before_, &direction_}) a->resize(nv_);
-    for (Array<Real>* a : {&multiplier_, &shortfall_, &trial_, &scale_}) a->resize(nc_);
+    for (Array<Real>* a : {&multiplier_, &shortfall_, &scratch1_, &scratch2_}) a->resize(nc_);
     multiplier_.fill(Real(0));
     result_.resize(1);
   }
 
   template <template <class> class Solver>
   void solve(int iterations) {
-    const ZoneArrays arrays{constraints_.view(),  constraint_first_.view(),
-                            vertex_first_.view(), incidence_.first(),
-                            incidence_.entries(), target_.view(),
-                            mass_.view(),         x_.view(),
-                            target_.view(),       x_.view(),
-                            before_.view(),       direction_.view(),
-                            multiplier_.view(),   shortfall_.view(),
-                            trial_.view(),        scale_.view(),
-                            result_.view()};
+    const ZoneArrays arrays{.constraints = constraints_.view(),
+                            .constraint_first = constraint_first_.view(),
+                            .vertex_first = vertex_first_.view(),
+                            .incidence_first = incidence_.first(),
+                            .incidence = incidence_.entries(),
+                            .target = target_.view(),
+                            .mass = mass_.view(),
+                            .fixed = x_.view(),
+                            .start = target_.view(),
+                            .x = x_.view(),
+                            .before = before_.view(),
+                            .direction = direction_.view(),
+                            .multiplier = multiplier_.view(),
+                            .shortfall = shortfall_.view(),
+                            .scratch1 = scratch1_.view(),
+                            .scratch2 = scratch2_.view(),
+                            .result = result_.view()};
+
+    // The size decides between a team and the whole device, as it does in a step.
     const SolveZone<Solver> solver{arrays, make_settings(iterations)};
     if (nv_ <= kLargestTeamZone)
       for_each_team("zone_trial", 1, solver);
@@ -109,16 +131,16 @@ class Trial {
 
   ZoneTrial result() const {
     const ZoneResult r = result_.download()[0];
-    ZoneTrial trial{nv_,
-                    nc_,
-                    r.iterations,
-                    static_cast<double>(r.violation),
-                    static_cast<double>(r.complementarity),
-                    static_cast<double>(r.momentum_residual),
-                    0,
-                    0};
+    ZoneTrial trial{.vertices = nv_,
+                    .constraints = nc_,
+                    .iterations = r.iterations,
+                    .violation = static_cast<double>(r.violation),
+                    .complementarity = static_cast<double>(r.complementarity),
+                    .momentum_residual = static_cast<double>(r.momentum_residual)};
+
+    // All masses are equal, so all weights a are 1.
     const std::vector<Vec3r> x = x_.download(), target = target_.download();
-    for (std::size_t i = 0; i < x.size(); ++i)  // all masses are equal: a = 1
+    for (std::size_t i = 0; i < x.size(); ++i)
       trial.objective += 0.5 * norm2(convert<double>(x[i]) - convert<double>(target[i]));
     return trial;
   }
@@ -130,7 +152,7 @@ class Trial {
   Array<Int4> slots_;
   Incidence incidence_;
   Array<Index> vertex_first_, constraint_first_;
-  Array<Real> mass_, multiplier_, shortfall_, trial_, scale_;
+  Array<Real> mass_, multiplier_, shortfall_, scratch1_, scratch2_;
   Array<ZoneResult> result_;
 };
 
@@ -152,7 +174,9 @@ ZoneTrial solve_zone_trial(Index side, ZoneSolver solver, int iterations) {
         trial.solve<ZoneLinear>(iterations);
         break;
     }
-    const ZoneTrial result = trial.result();  // waits for the device
+
+    // Reading the result waits for the device, so it belongs to the time.
+    const ZoneTrial result = trial.result();
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - clock).count();
     const double least = run == 0 ? ms : std::min(ms, best.milliseconds);
