@@ -7,7 +7,8 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-/// Where the vertices go in this step: to x1, or as velocity and gravity let expect.
+/// The motion of the vertices in this step: to x1, or to where velocity and gravity are expected to
+/// take them.
 struct Paths {
   View<const Vec3r> from, to;  ///< to: end positions, or velocities when predicting
   bool predicted;
@@ -35,7 +36,7 @@ Paths make_paths(const StepContext& step, bool predicted) {
           .cloth_vertices = step.mesh.cloth_vertices};
 }
 
-/// Trusted region of a vertex.
+/// Makes the trusted region of a vertex, the padded box around its path.
 struct VertexBoxes {
   Paths paths;
   View<Box> box;
@@ -44,6 +45,7 @@ struct VertexBoxes {
   ICLOTH_HD void operator()(Index i) const { box[i] = paths.swept(i, pad); }
 };
 
+/// The box of a face is the hull of the boxes of its vertices.
 struct FaceBoxes {
   View<const Int3> face;
   View<const Box> vertex;
@@ -57,6 +59,7 @@ struct FaceBoxes {
   }
 };
 
+/// The box of an edge is the hull of the boxes of its vertices.
 struct EdgeBoxes {
   View<const Int2> edge;
   View<const Box> vertex;
@@ -69,7 +72,7 @@ struct EdgeBoxes {
   }
 };
 
-/// 1 where a vertex leaves its trusted region, with `margin` around its path.
+/// Returns 1 where a vertex leaves its trusted region, with `margin` around its path.
 struct Outside {
   Paths paths;
   View<const Box> box;
@@ -88,6 +91,8 @@ struct Outside {
 
 void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
   const Topology& mesh = step.mesh;
+
+  // Boxes of vertices are made first; those of faces and edges are unions of them.
   vertex_box_.resize(mesh.vertices);
   face_box_.resize(mesh.faces);
   edge_box_.resize(mesh.edges);
@@ -97,6 +102,8 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
            FaceBoxes{mesh.face.view(), vertex_box_.view(), face_box_.view()});
   for_each("broad_phase.edge_boxes", mesh.edges,
            EdgeBoxes{mesh.edge.view(), vertex_box_.view(), edge_box_.view()});
+
+  // The trees keep the order of their leaves for a few refits, after which sorting anew pays.
   if (step.parameters.broad_phase.method == BroadPhaseMethod::tree) {
     const bool rebuild = !boxes_valid_ || ++refits_ >= step.parameters.broad_phase.rebuild_interval;
     if (rebuild) refits_ = 0;
@@ -105,8 +112,8 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
   boxes_valid_ = true;
 }
 
-/// What paths may do beyond the expected without making the lists anew: the repulsion reaches h,
-/// and the solve differs from the prediction.
+/// The distance by which paths may exceed the expected ones without making the lists anew: the
+/// repulsion reaches h, and the solve differs from the prediction.
 Real BroadPhase::slack(const StepContext& step) {
   return std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
                    static_cast<Real>(0.2) * step.mesh.median_edge});
@@ -116,6 +123,8 @@ void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dir
   const bool all = dirty.size() == 0;
   candidates_.clear();
   tree_.count_tests = step.parameters.broad_phase.count_tests;
+
+  // Both methods can find all pairs, or those with a dirty vertex alone.
   const auto find = [&](auto& finder) {
     if (all)
       finder.find(step.mesh, boxes(), candidates_);
@@ -126,6 +135,8 @@ void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dir
     find(tree_);
   else
     find(hash_);
+
+  // Only a list of all pairs can serve later rounds and steps.
   complete_ = all;
   if (step.parameters.broad_phase.count_tests) step.report.box_tests += candidates_.box_tests;
 }
@@ -137,7 +148,7 @@ bool BroadPhase::covers(StepContext& step, bool predicted, Real margin) const {
 }
 
 void BroadPhase::prepare(StepContext& step) {
-  // Two elements closer than h must overlap: each end needs half of h around it.
+  // Two elements closer than h must overlap, so each end needs half of h around it.
   if (complete_ && covers(step, true, static_cast<Real>(0.5) * step.thickness())) return;
   make_boxes(step, true, slack(step));
   find_candidates(step, {});
@@ -152,7 +163,7 @@ void BroadPhase::cover_candidate(StepContext& step) {
 void BroadPhase::cover_dirty(StepContext& step, View<const std::uint8_t> dirty) {
   const bool covered = covers(step, false, Real(0));
   if (covered && complete_) return;
-  // No slack: lists of dirty pairs serve one round, and tight boxes keep them short.
+  // There is no slack here: lists of dirty pairs serve one round, and tight boxes keep them short.
   if (!covered) make_boxes(step, false, Real(0));
   find_candidates(step, dirty);
 }

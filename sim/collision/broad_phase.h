@@ -1,9 +1,10 @@
-// Broad phase shared by proximity and CCD: which VF and EE pairs can come together at all.
+// The broad phase shared by proximity and CCD: it finds which VF and EE pairs can come together at
+// all.
 //
-// Each vertex has a box that covers where it is and where it is expected to go, padded. The
-// candidate pairs are those whose elements' boxes (hulls of their vertices' boxes) overlap. As long
-// as all trajectories x0 → x1 stay in the boxes the list is complete, so it serves proximity, every
-// CCD round, and the next steps too while the cloth hardly moves.
+// Each vertex has a box, its trusted region, that covers its position and its expected path,
+// padded. The candidate pairs are those whose elements' boxes (hulls of their vertices' boxes)
+// overlap. As long as all trajectories x0 → x1 stay in the boxes the list is complete, so it serves
+// proximity, every CCD round, and the next steps too while the cloth hardly moves.
 #pragma once
 
 #include "sim/collision/hash_pairs.h"
@@ -19,10 +20,10 @@ class BroadPhase {
   void prepare(StepContext& step);
   /// Makes the candidate lists cover x0 → x1 as it is now.
   void cover_candidate(StepContext& step);
-  /// The same for pairs with a dirty vertex (cloth_vertices) alone, where the lists do not cover
-  /// them already: the clean ones have been tested.
+  /// Makes the lists cover x0 → x1 for pairs with a dirty vertex (cloth_vertices) alone, where they
+  /// do not cover it already: the clean pairs have been tested.
   void cover_dirty(StepContext& step, View<const std::uint8_t> dirty);
-  /// Makes boxes and lists anew whatever is there, as a detection without coherence would.
+  /// Makes boxes and lists anew even where they are valid, as a detection without coherence would.
   void cover_again(StepContext& step);
   /// Forgets the lists (the state was set from outside).
   void invalidate() { boxes_valid_ = complete_ = false; }
@@ -36,9 +37,11 @@ class BroadPhase {
  private:
   /// True while every path, with `margin` around it, lies in its vertex's trusted region.
   bool covers(StepContext& step, bool predicted, Real margin) const;
+  /// The slack of the boxes, which decides how long the lists last.
   static Real slack(const StepContext& step);
+  /// Makes the boxes of all elements, and updates the trees.
   void make_boxes(StepContext& step, bool predicted, Real pad);
-  /// `dirty`: empty for all pairs.
+  /// Fills the lists from the boxes. `dirty` is empty for all pairs.
   void find_candidates(StepContext& step, View<const std::uint8_t> dirty);
   ElementBoxes boxes() const { return {vertex_box_.view(), face_box_.view(), edge_box_.view()}; }
 

@@ -1,4 +1,4 @@
-// What the finders of candidate pairs work on and give back.
+// The input and the output of the finders of candidate pairs.
 #pragma once
 
 #include "kernels/bvh.h"
@@ -12,7 +12,8 @@ struct ElementBoxes {
   View<const Box> vertex, face, edge;
 };
 
-/// Pairs that share no vertex, at least one of them of a cloth; each once, in any order.
+/// Pairs that share no vertex and of which at least one element is of a cloth; each is listed once,
+/// in any order.
 struct Candidates {
   Array<Pair> vertex_faces;    ///< (vertex, face)
   Array<Pair> edge_edges;      ///< (edge, edge), the smaller edge first
@@ -25,6 +26,7 @@ struct Candidates {
   }
 };
 
+/// Copies pairs behind those of a list.
 struct CopyPairs {
   View<const Pair> from;
   View<Pair> to;
@@ -45,7 +47,7 @@ ICLOTH_HD inline bool share_vertex(const Int2& p, const Int2& q) {
 }
 ICLOTH_HD inline Pair ordered_pair(Index a, Index b) { return a < b ? Pair{a, b} : Pair{b, a}; }
 
-/// Which elements have a dirty vertex; obstacles have none.
+/// Tells which elements have a dirty vertex; obstacles have none.
 struct DirtyVertices {
   View<const std::uint8_t> flag;  ///< (cloth_vertices)
   ICLOTH_HD bool operator()(Index v) const { return v < flag.size() && flag[v] != 0; }

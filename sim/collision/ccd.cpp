@@ -6,6 +6,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+/// Tests one candidate pair and emits its impact.
 struct ImpactTest {
   View<const Vec3r> x0, x1;
   View<const Real> inverse_mass;
@@ -13,6 +14,7 @@ struct ImpactTest {
   bool incremental;
   double separation;  ///< of the degenerate fallback [m]
 
+  /// True for a pair that cannot touch anew: nothing of it can move, or no vertex of it is dirty.
   ICLOTH_HD bool skip(const Index v[4]) const {
     bool movable = false, changed = false;
     for (int a = 0; a < 4; ++a) {
@@ -25,10 +27,14 @@ struct ImpactTest {
   template <class Emit>
   ICLOTH_HD void test(bool edge_edge, Pair pair, const Index v[4], Emit& emit) const {
     if (skip(v)) return;
+
+    // The elementary test gets the four trajectories.
     CcdQuery<Real> q;
     for (int a = 0; a < 4; ++a) q.p0[a] = x0[v[a]], q.p1[a] = x1[v[a]];
     CcdHit hit;
     if (!(edge_edge ? ccd_ee(q, separation, hit) : ccd_vf(q, separation, hit))) return;
+
+    // The impact keeps the weights and the normal at the time of the contact.
     Impact impact;
     impact.key = pair_key(edge_edge, pair);
     for (int a = 0; a < 4; ++a) {
@@ -41,12 +47,13 @@ struct ImpactTest {
   }
 };
 
+/// Tests a vertex against a face.
 struct TestVertexFace {
   ImpactTest base;
   View<const Pair> candidates;
   View<const Int3> face;
 
-  /// Counts the pairs that are tested.
+  /// Returns 1 for a pair that is tested, to count them.
   ICLOTH_HD Index operator()(Index i) const {
     const Int3 f = face[candidates[i].b];
     const Index v[4] = {candidates[i].a, f.v[0], f.v[1], f.v[2]};
@@ -62,6 +69,7 @@ struct TestVertexFace {
   }
 };
 
+/// Tests an edge against an edge.
 struct TestEdgeEdge {
   ImpactTest base;
   View<const Pair> candidates;
@@ -95,6 +103,9 @@ void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std:
                         .incremental = incremental,
                         .separation = 0.25 * static_cast<double>(step.offset())};
   impacts_.resize(0);
+
+  // The lists are sorted by key, vertices against faces first, so that they depend on the state
+  // alone.
   const Array<Pair>& vf = broad_phase.vertex_faces();
   const Array<Pair>& ee = broad_phase.edge_edges();
   const TestVertexFace test_vf{base, vf.view(), mesh.face.view()};
@@ -103,6 +114,8 @@ void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std:
   append_sorted_("ccd.sort", found_, impacts_);
   collect("ccd.edge_edge", ee.size(), test_ee, found_);
   append_sorted_("ccd.sort", found_, impacts_);
+
+  // A round that tests dirty pairs alone has to count them.
   step.report.elementary_tests +=
       incremental ? std::int64_t{reduce("ccd.count", vf.size(), Index{0}, test_vf, Sum{})} +
                         reduce("ccd.count", ee.size(), Index{0}, test_ee, Sum{})

@@ -1,8 +1,9 @@
 // Stage 3: all VF and EE pairs whose linear trajectories x0 → x1 meet (paper Section 3).
 //
-// The first round tests every candidate; later rounds only pairs with a dirty vertex: one whose
-// end position has changed since the last round, or that belonged to a colliding pair (the paper's
-// T_d, corrected: with the vertices of colliding pairs alone, moved neighbours would be missed).
+// The first round tests every candidate. Later rounds test only pairs with a dirty vertex, which is
+// one whose end position has changed since the last round, or one of a colliding pair. (This
+// corrects the paper's T_d: with the vertices of colliding pairs alone, moved neighbours would be
+// missed.)
 #pragma once
 
 #include "kernels/impact.h"

@@ -7,6 +7,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+/// The key of a half-edge: its larger vertex, then its smaller one.
 struct HalfEdgeKeys {
   View<const Int3> face;
   View<std::uint64_t> key;
@@ -19,7 +20,7 @@ struct HalfEdgeKeys {
   }
 };
 
-/// The first of equal keys, and no edge from a vertex to itself.
+/// Keeps the first one of equal keys, and no edge from a vertex to itself.
 struct IsNewEdge {
   View<const std::uint64_t> key;
   ICLOTH_HD bool operator()(Index i) const {
@@ -27,6 +28,7 @@ struct IsNewEdge {
   }
 };
 
+/// Turns the picked keys into edges.
 struct TakeEdges {
   View<const std::uint64_t> key;
   View<const Index> picked;
@@ -37,7 +39,7 @@ struct TakeEdges {
   }
 };
 
-/// Distinct edges of the faces, numbered by their larger vertex, then by the smaller.
+/// Finds the distinct edges of the faces, numbered by their larger vertex, then by the smaller.
 void find_edges(const Array<Int3>& face, Array<Int2>& edge) {
   const Index corners = 3 * face.size();
   Array<std::uint64_t> key(corners);
@@ -48,6 +50,7 @@ void find_edges(const Array<Int3>& face, Array<Int2>& edge) {
   for_each("detect.edges", edge.size(), TakeEdges{key.view(), picked.view(), edge.view()});
 }
 
+/// The faces and edges of one mesh, all of it cloth.
 Topology make_topology(std::span<const Triangle> faces, Index vertices) {
   Topology mesh;
   std::vector<Int3> face;
@@ -78,22 +81,28 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 Collisions detect_collisions(std::span<const Vec3d> start, std::span<const Vec3d> end,
                              std::span<const Triangle> faces) {
   Collisions collisions;
+
+  // The mesh and its two frames become the state of a step without padding of the boxes, so that
+  // only pairs that touch are found.
   auto clock = std::chrono::steady_clock::now();
   const auto vertices = static_cast<Index>(start.size());
   const Topology mesh = make_topology(faces, vertices);
   Parameters parameters;
-  parameters.proximity.thickness = parameters.impact_zones.offset = 0;  // boxes without padding
+  parameters.proximity.thickness = parameters.impact_zones.offset = 0;
   State state;
   upload(state.x0, start);
   upload(state.x1, end);
   state.inverse_mass.resize(vertices);
   state.inverse_mass.fill(Real(1));
+
+  // The broad phase covers the straight paths from start to end.
   StepReport report;
   StepContext step{mesh, parameters, state, report, Real(1)};
   BroadPhase broad_phase;
   broad_phase.cover_candidate(step);
   collisions.ms_broad_phase = milliseconds_since(clock);
 
+  // The elementary tests decide; an edge pair is told by its four vertices.
   clock = std::chrono::steady_clock::now();
   Ccd ccd;
   ccd.find(step, broad_phase, {}, false);

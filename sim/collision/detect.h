@@ -1,5 +1,5 @@
-// All collisions of a mesh between two frames: broad phase and exact elementary tests, without a
-// simulation around them. Built from the stages in double precision.
+// All collisions of a mesh between two frames, by the broad phase and exact elementary tests,
+// without a simulation around them. It is built from the stages in double precision.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ struct Collisions {
 };
 
 namespace cpu64 {
-/// Vertex–face and edge–edge pairs that touch at some time while every vertex moves straight from
-/// `start` to `end` (V each) [any unit]. Pairs that share a vertex are left out. The indices must
-/// be in range.
+/// Finds the vertex–face and edge–edge pairs that touch at some time while every vertex moves
+/// straight from `start` to `end` (V each) [any unit]. Pairs that share a vertex are left out. The
+/// indices must be in range.
 Collisions detect_collisions(std::span<const Vec3d> start, std::span<const Vec3d> end,
                              std::span<const Triangle> faces);
 }  // namespace cpu64

@@ -13,11 +13,13 @@ constexpr Index kTestsPerItem = 32;  ///< box tests that one thread does
 constexpr int kBits = 21;            ///< of one coordinate of a cell
 constexpr std::uint64_t kLast = (std::uint64_t{1} << kBits) - 1;
 
+/// A uniform grid, whose cells are numbered by three coordinates from 0 on.
 struct Grid {
   float origin[3];
   float inverse_cell;
 
-  /// One function for all uses: the token needs the same rounding everywhere.
+  /// The coordinate of the cell that holds x. All uses share this function, since the token needs
+  /// the same rounding everywhere.
   ICLOTH_HD std::uint64_t coordinate(float x, int axis) const {
     const float scaled = (x - origin[axis]) * inverse_cell;
     if (!(scaled > 0)) return 0;
@@ -25,12 +27,13 @@ struct Grid {
   }
 };
 
+/// The cells that a box covers.
 struct CellRange {
   std::uint64_t low[3];
   std::uint64_t count[3];
 };
 
-/// Elements of two kinds, the second numbered on from the first.
+/// The boxes of elements of two kinds, the second kind numbered on from the first.
 struct TwoKinds {
   View<const Box> first, second;
   ICLOTH_HD const Box& operator[](Index i) const {
@@ -52,12 +55,13 @@ ICLOTH_HD std::uint64_t cell_key(std::uint64_t x, std::uint64_t y, std::uint64_t
   return (x << (2 * kBits)) | (y << kBits) | z;
 }
 
-/// Cells of an element, 0 for a large one. Products of counts up to 2²¹ fit.
+/// The number of cells of an element, 0 for a large one. Products of counts up to 2²¹ fit.
 ICLOTH_HD Index cell_count(const CellRange& r) {
   const std::uint64_t count = r.count[0] * r.count[1] * r.count[2];
   return count <= static_cast<std::uint64_t>(kMostCells) ? static_cast<Index>(count) : 0;
 }
 
+/// The bounds of all boxes and their mean size, which the grid is made from.
 struct Extent {
   Box bounds;
   double length = 0;  ///< sum of the boxes' mean axes
@@ -79,6 +83,7 @@ struct UniteExtents {
   }
 };
 
+/// Counts the cells of each element.
 struct CountCells {
   TwoKinds box;
   Grid grid;
@@ -86,12 +91,14 @@ struct CountCells {
   ICLOTH_HD void operator()(Index i) const { count[i] = cell_count(cells_of(grid, box[i])); }
 };
 
+/// Picks the elements over so many cells that they are kept apart.
 struct IsLarge {
   TwoKinds box;
   Grid grid;
   ICLOTH_HD bool operator()(Index i) const { return cell_count(cells_of(grid, box[i])) == 0; }
 };
 
+/// Writes an entry (cell, element) for every cell of an element.
 struct WriteCells {
   TwoKinds box;
   Grid grid;
@@ -111,11 +118,13 @@ struct WriteCells {
   }
 };
 
+/// Picks the first entry of each cell.
 struct StartsCell {
   View<const std::uint64_t> key;
   ICLOTH_HD bool operator()(Index i) const { return i == 0 || key[i] != key[i - 1]; }
 };
 
+/// Sets the end of the last cell.
 struct SetEnd {
   View<Index> list;
   Index value;
@@ -128,16 +137,17 @@ ICLOTH_HD bool overlap(const Box& a, const Box& b) {
   return true;
 }
 
-/// Range of entries and how many of them are below an element number (entries ascend).
+/// The entries of one cell, a range of ascending element numbers.
 struct CellView {
   View<const Index> element;
   Index first, last;
+  /// How many entries have an element number below the limit.
   ICLOTH_HD Index below(Index limit) const {
     return partition_point(last - first, [&](Index k) { return element[first + k] < limit; });
   }
 };
 
-/// Pairs of edges: cloth edges with all later ones.
+/// The pairs of edges in a cell: cloth edges with all later ones.
 struct EdgePairs {
   TwoKinds box;
   View<const Int2> edge;
@@ -147,13 +157,17 @@ struct EdgePairs {
     std::int64_t cloth, all;
   };
   ICLOTH_HD Cell cell(const CellView& c) const { return {c.below(cloth), c.last - c.first}; }
+  /// Cloth edges come first, so they pair with one another and with the obstacles' edges behind
+  /// them.
   ICLOTH_HD std::int64_t tests(const Cell& c) const {
     return c.cloth * (c.cloth - 1) / 2 + c.cloth * (c.all - c.cloth);
   }
-  /// Test t of a cell as two places in it: row a has the places after a, so that rows 0 … a − 1
-  /// hold a (2 all − a − 1) / 2 tests.
+  /// Finds the two places in a cell that test t compares. Row a has the places after a, so that
+  /// rows 0 … a − 1 hold a (2 all − a − 1) / 2 tests.
   ICLOTH_HD void decode(const Cell& c, std::int64_t t, Index& a, Index& b) const {
     const auto before = [&](std::int64_t row) { return row * (2 * c.all - row - 1) / 2; };
+
+    // The row is the solution of a quadratic, which rounding may miss by one.
     const double n = static_cast<double>(c.all) - 0.5;
     auto row = static_cast<std::int64_t>(
         n - std::sqrt(std::fmax(n * n - 2.0 * static_cast<double>(t), 0.0)));
@@ -169,7 +183,7 @@ struct EdgePairs {
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b}; }
 };
 
-/// Pairs of a vertex and a face, numbered on: vertices first.
+/// The pairs of a vertex and a face in a cell. Vertices are numbered first, faces behind them.
 struct VertexFacePairs {
   TwoKinds box;
   View<const Int3> face;
@@ -195,7 +209,7 @@ struct VertexFacePairs {
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b - vertices}; }
 };
 
-/// Work items of each cell.
+/// Counts the work items of each cell, of kTestsPerItem tests each.
 template <class Pairs>
 struct CountItems {
   Pairs pairs;
@@ -207,6 +221,7 @@ struct CountItems {
   }
 };
 
+/// Makes the tests of one work item.
 template <class Pairs>
 struct TestItem {
   Pairs pairs;
@@ -216,11 +231,13 @@ struct TestItem {
 
   template <class Emit>
   ICLOTH_HD void operator()(Index item, Emit& emit) const {
-    // The last cell that starts at or before the item.
+    // The cell of the item is the last one that starts at or before it.
     const Index c =
         partition_point(item_first.size() - 1, [&](Index k) { return item_first[k] <= item; }) - 1;
     const Index first = cell_first[c];
     const auto cell = pairs.cell({element, first, cell_first[c + 1]});
+
+    // The item's share of the cell's tests.
     const std::int64_t begin = static_cast<std::int64_t>(item - item_first[c]) * kTestsPerItem;
     const std::int64_t all = pairs.tests(cell);
     const std::int64_t end = begin + kTestsPerItem < all ? begin + kTestsPerItem : all;
@@ -231,6 +248,8 @@ struct TestItem {
     }
   }
 
+  /// Emits a pair that overlaps, in the one cell that holds the lower corner of the overlap (the
+  /// token), so that it is found once.
   template <class Emit>
   ICLOTH_HD void test(Index a, Index b, std::uint64_t here, Emit& emit) const {
     const Box &p = pairs.box[a], &q = pairs.box[b];
@@ -243,7 +262,7 @@ struct TestItem {
   }
 };
 
-/// A large element against all; pairs of two large ones are found from the first.
+/// Tests a large element against all others; a pair of two large ones is found from the first.
 template <class Pairs>
 struct TestLarge {
   Pairs pairs;
@@ -263,6 +282,7 @@ struct TestLarge {
   }
 };
 
+/// Picks the pairs with a dirty vertex.
 template <class Dirty>
 struct IsDirtyPair {
   View<const Pair> pair;
@@ -279,6 +299,7 @@ struct DirtyEdgeEdge {
   ICLOTH_HD bool operator()(Pair p) const { return edge(p.a) || edge(p.b); }
 };
 
+/// Copies the picked pairs.
 struct PickPairs {
   View<const Pair> from;
   View<const Index> picked;
@@ -286,11 +307,14 @@ struct PickPairs {
   ICLOTH_HD void operator()(Index i) const { to[i] = from[picked[i]]; }
 };
 
+/// Chooses the cells from the bounds and the mean size of the boxes.
 Grid make_grid(const TwoKinds& box) {
   const Extent e =
       reduce("broad_phase.extent", box.size(), Extent{}, ExtentOf{box}, UniteExtents{});
-  // 1.5 mean extents: smaller cells hold more copies, larger ones more tests.
+  // Cells have 1.5 mean extents: smaller ones hold more copies, larger ones cause more tests.
   double cell = 1.5 * e.length / std::max<double>(1, box.size());
+
+  // Coordinates have kBits bits, so cells must not be smaller than the bounds divided by that.
   for (int k = 0; k < 3; ++k)
     cell = std::max(cell, static_cast<double>(e.bounds.hi[k] - e.bounds.lo[k]) / (kLast - 1.0));
   Grid grid{{e.bounds.lo[0], e.bounds.lo[1], e.bounds.lo[2]}, 0};
@@ -304,25 +328,32 @@ template <class Pairs>
 void HashPairs::run(const char* name, const Pairs& pairs, Array<Pair>& list, Candidates& out) {
   const Index n = pairs.box.size();
   const Grid grid = make_grid(pairs.box);
+
+  // Every element is entered into the cells that its box covers; large ones are kept apart.
   entry_first_.resize(n + 1);
   for_each("broad_phase.cells", n, CountCells{pairs.box, grid, entry_first_.view().sub(0, n)});
   compact("broad_phase.large", n, IsLarge{pairs.box, grid}, large_);
   const Index entries =
       exclusive_scan("broad_phase.cells", entry_first_.view().sub(0, n), entry_first_.view());
+
   key_.resize(entries);
   element_.resize(entries);
   for_each("broad_phase.cells", n,
            WriteCells{pairs.box, grid, entry_first_.view(), key_.view(), element_.view()});
+
+  // Sorted entries make the cells; each ends where the next one begins.
   sort_by_key("broad_phase.sort", key_.view(), element_.view(), 3 * kBits);
   const Index cells = compact("broad_phase.cells", entries, StartsCell{key_.view()}, cell_first_);
   cell_first_.resize_keep(cells + 1);
   for_each("broad_phase.cells", 1, SetEnd{cell_first_.view(), entries});
 
+  // The tests of all cells are dealt out in work items of equal size, as cells differ widely.
   item_first_.resize(cells + 1);
   for_each("broad_phase.work", cells,
            CountItems<Pairs>{pairs, cell_first_.view(), element_.view(), item_first_.view()});
   const Index items =
       exclusive_scan("broad_phase.work", item_first_.view().sub(0, cells), item_first_.view());
+
   collect(name, items,
           TestItem<Pairs>{.pairs = pairs,
                           .grid = grid,
@@ -332,6 +363,8 @@ void HashPairs::run(const char* name, const Pairs& pairs, Array<Pair>& list, Can
                           .item_first = item_first_.view()},
           list);
   out.box_tests += std::int64_t{items} * kTestsPerItem;
+
+  // Large elements, if any, are tested against all others.
   if (large_.empty()) return;
   collect(name, n, TestLarge<Pairs>{pairs, grid, large_.view()}, found_);
   out.box_tests += std::int64_t{large_.size()} * n;
@@ -353,6 +386,8 @@ void HashPairs::find(const Topology& mesh, const ElementBoxes& boxes, Candidates
 void HashPairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
                            View<const std::uint8_t> dirty, Candidates& out) {
   find(mesh, boxes, out);
+
+  // All pairs are found; those without a dirty vertex are dropped.
   const DirtyVertices vertex{dirty};
   const auto keep = [&](Array<Pair>& list, const auto& is_dirty) {
     const Index count = compact("broad_phase.dirty", list.size(), is_dirty, kept_);

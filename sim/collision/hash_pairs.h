@@ -2,8 +2,8 @@
 // 2018, "PSCC"): a uniform grid, sorted cells, and the tests of all cells dealt out evenly.
 //
 // Deviations: cells hold vertices, edges and faces instead of triangles, so that no triangle has to
-// be made responsible for a pair of features; keys are the cell's three coordinates (21 bits each),
-// so that no two cells ever share one; elements over more than 64 cells are kept apart and tested
+// be made responsible for a pair of features. Keys are the cell's three coordinates (21 bits each),
+// so that no two cells ever share one. Elements over more than 64 cells are kept apart and tested
 // against all others. A pair is reported by the cell that holds the lower corner of the overlap of
 // its two boxes (the token; Fan et al. 2011), hence once.
 #pragma once
@@ -14,9 +14,10 @@ namespace icloth::ICLOTH_BUILD {
 
 class HashPairs {
  public:
-  /// All pairs whose boxes overlap.
+  /// Finds all pairs whose boxes overlap.
   void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
-  /// Those of them that have a dirty vertex: finds all and drops the others.
+  /// Finds the pairs whose boxes overlap and that have a dirty vertex, by finding all pairs and
+  /// dropping the others.
   void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
                   Candidates& out);
 

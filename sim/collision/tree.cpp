@@ -10,7 +10,7 @@ struct UniteBoxes {
   }
 };
 
-/// Places of the items of a tree: a list, or the range from `first` on.
+/// The items of a tree: a list of elements, or the range from `first` on.
 struct Items {
   View<const Index> list;
   Index first;
@@ -23,6 +23,7 @@ struct BoxAt {
   ICLOTH_HD Box operator()(Index i) const { return box[items[i]]; }
 };
 
+/// The Morton code of the centre of an item's box, within the bounds of all items.
 struct MortonCodes {
   View<const Box> box;
   Items items;
@@ -42,6 +43,7 @@ struct MortonCodes {
   }
 };
 
+/// Fits the lowest level to the boxes of the items; missing children get empty boxes.
 struct FitLeaves {
   View<const Box> box;
   View<const Index> item;
@@ -55,6 +57,7 @@ struct FitLeaves {
   }
 };
 
+/// Fits a level to the boxes of the level below it.
 struct FitLevel {
   View<TreeNode> node;
   Index below, below_count, level;
@@ -95,10 +98,15 @@ void Tree::sort(View<const Box> boxes, const Items& items, Index n) {
   levels_ = 0;
   if (n == 0) return;
   codes_.resize(n);
+
+  // Items sorted along the Morton curve of their centres are near each other, so that nodes are
+  // small.
   const Box bounds = reduce("broad_phase.bounds", n, Box{}, BoxAt{boxes, items}, UniteBoxes{});
   for_each("broad_phase.morton", n,
            MortonCodes{boxes, items, codes_.view(), items_.view(), bounds});
   sort_by_key("broad_phase.sort", codes_.view(), items_.view(), 30);
+
+  // Each level has an eighth of the nodes of the one below, down to a single root.
   Index total = 0;
   for (Index count = n; levels_ == 0 || count > 1;) {
     count = (count + kTreeWidth - 1) / kTreeWidth;

@@ -1,4 +1,4 @@
-// Bounding volume tree over boxes of elements (kernels/bvh.h).
+// A bounding volume tree over boxes of elements (kernels/bvh.h).
 #pragma once
 
 #include "kernels/bvh.h"
@@ -8,12 +8,12 @@ namespace icloth::ICLOTH_BUILD {
 
 class Tree {
  public:
-  /// Over the elements first, first + 1 … boxes.size() − 1, sorted anew (Morton order of their
-  /// boxes' centres).
+  /// Builds the tree over the elements first, first + 1 … boxes.size() − 1, sorted anew (in the
+  /// Morton order of their boxes' centres).
   void build(View<const Box> boxes, Index first);
-  /// Over the listed elements alone.
+  /// Builds the tree over the listed elements alone.
   void build(View<const Box> boxes, View<const Index> elements);
-  /// New boxes, old order.
+  /// Takes new boxes and keeps the order of the leaves.
   void refit(View<const Box> boxes);
   bool empty() const { return items_.size() == 0; }
   TreeView view() const;

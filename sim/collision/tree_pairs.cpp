@@ -3,7 +3,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-/// Visits without emitting: how many boxes a query compares with.
+/// Counts the boxes that a query compares with, without emitting anything.
 template <class Query>
 struct CountTests {
   Query query;
@@ -13,7 +13,7 @@ struct CountTests {
   }
 };
 
-/// (vertex, face) candidates of one vertex against one tree.
+/// Finds the (vertex, face) candidates of one vertex against one tree.
 struct VertexFaceQuery {
   TreeView tree;
   View<const Box> box;
@@ -30,7 +30,7 @@ struct VertexFaceQuery {
   }
 };
 
-/// The same for vertices that are not dirty: the others have been asked already.
+/// Finds the candidates of a vertex that is not dirty; those that are dirty have queried already.
 struct CleanVertexQuery {
   VertexFaceQuery query;
   DirtyVertices dirty;
@@ -41,8 +41,8 @@ struct CleanVertexQuery {
   }
 };
 
-/// (edge, edge) candidates of one cloth edge against one tree. In its own tree an edge meets only
-/// the leaves after its own, so that each pair is found once.
+/// Finds the (edge, edge) candidates of one cloth edge against one tree. In its own tree an edge
+/// meets only the leaves after its own, so that each pair is found once.
 struct EdgeEdgeQuery {
   TreeView tree;
   View<const Index> order;  ///< query edges in leaf order
@@ -59,7 +59,7 @@ struct EdgeEdgeQuery {
   }
 };
 
-/// Those of a dirty edge; a pair of two dirty edges is found from the smaller one.
+/// Finds the candidates of a dirty edge; a pair of two dirty edges is found from the smaller one.
 struct DirtyEdgeQuery {
   TreeView tree;
   View<const Index> list;
@@ -79,6 +79,7 @@ struct DirtyEdgeQuery {
 }  // namespace
 
 void TreePairs::update(const Topology& mesh, const ElementBoxes& boxes, bool rebuild) {
+  // A tree over a range keeps the boxes before it, as its items are numbered by the whole list.
   const auto update = [&](Tree& tree, View<const Box> all, Index first, Index last) {
     const View<const Box> upto = all.sub(0, last);
     if (rebuild)
@@ -86,18 +87,20 @@ void TreePairs::update(const Topology& mesh, const ElementBoxes& boxes, bool reb
     else
       tree.refit(upto);
   };
+
   update(cloth_faces_, boxes.face, 0, mesh.cloth_faces);
   update(cloth_edges_, boxes.edge, 0, mesh.cloth_edges);
   update(obstacle_faces_, boxes.face, mesh.cloth_faces, mesh.faces);
   update(obstacle_edges_, boxes.edge, mesh.cloth_edges, mesh.edges);
 }
 
-/// Appends what a query finds.
+/// Appends the candidates that a query finds.
 template <class Query>
 void TreePairs::run(const char* name, Index count, const Query& query, Array<Pair>& list,
                     Candidates& out) {
   if (count == 0) return;
   collect(name, count, query, found_);
+
   if (count_tests)
     out.box_tests +=
         reduce("broad_phase.count", count, std::int64_t{0}, CountTests<Query>{query}, Sum{});
@@ -105,6 +108,8 @@ void TreePairs::run(const char* name, Index count, const Query& query, Array<Pai
 }
 
 void TreePairs::find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out) {
+  // Every vertex of the cloth is compared with all faces; those of obstacles with the cloth's
+  // alone.
   const auto vertices_against = [&](const Tree& tree, Index first, Index count) {
     if (tree.empty()) return;
     run("broad_phase.vertex_face", count,
@@ -114,6 +119,8 @@ void TreePairs::find(const Topology& mesh, const ElementBoxes& boxes, Candidates
   vertices_against(cloth_faces_, 0, mesh.cloth_vertices);
   vertices_against(obstacle_faces_, 0, mesh.cloth_vertices);
   vertices_against(cloth_faces_, mesh.cloth_vertices, mesh.vertices - mesh.cloth_vertices);
+
+  // Every edge of the cloth is compared with later cloth edges and with all edges of obstacles.
   for (const Tree* tree : {&cloth_edges_, &obstacle_edges_}) {
     if (tree->empty()) continue;
     run("broad_phase.edge_edge", mesh.cloth_edges,
@@ -127,22 +134,30 @@ void TreePairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
                            View<const std::uint8_t> dirty, Candidates& out) {
   const DirtyVertices dirty_vertex{dirty};
   const DirtyEdges dirty_edge{dirty_vertex, mesh.edge.view()};
+
+  // The dirty elements are listed first.
   compact("broad_phase.dirty", mesh.cloth_vertices, dirty_vertex, dirty_vertices_);
   compact("broad_phase.dirty", mesh.cloth_faces, DirtyFaces{dirty_vertex, mesh.face.view()},
           dirty_faces_);
   compact("broad_phase.dirty", mesh.cloth_edges, dirty_edge, dirty_edges_);
+
+  // Dirty vertices are compared with all faces.
   for (const Tree* tree : {&cloth_faces_, &obstacle_faces_}) {
     if (tree->empty()) continue;
     run("broad_phase.vertex_face", dirty_vertices_.size(),
         VertexFaceQuery{tree->view(), boxes.vertex, mesh.face.view(), dirty_vertices_.view(), 0},
         out.vertex_faces, out);
   }
+
+  // The clean vertices meet the dirty faces only, in a tree of their own.
   dirty_face_tree_.build(boxes.face, dirty_faces_.view());
   if (!dirty_face_tree_.empty())
     run("broad_phase.vertex_face", mesh.vertices,
         CleanVertexQuery{{dirty_face_tree_.view(), boxes.vertex, mesh.face.view(), {}, 0},
                          dirty_vertex},
         out.vertex_faces, out);
+
+  // Dirty edges are compared with all edges.
   for (const Tree* tree : {&cloth_edges_, &obstacle_edges_}) {
     if (tree->empty()) continue;
     run("broad_phase.edge_edge", dirty_edges_.size(),

@@ -8,12 +8,13 @@ namespace icloth::ICLOTH_BUILD {
 
 class TreePairs {
  public:
-  /// New boxes; `rebuild`: the order of the leaves is made anew as well.
+  /// Takes new boxes. With `rebuild` the order of the leaves is made anew as well.
   void update(const Topology& mesh, const ElementBoxes& boxes, bool rebuild);
 
-  /// All pairs whose boxes overlap.
+  /// Finds all pairs whose boxes overlap.
   void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
-  /// Those of them that have a dirty vertex. `dirty`: 1 or 0 (cloth_vertices).
+  /// Finds the pairs whose boxes overlap and that have a dirty vertex. `dirty` holds 1 or 0
+  /// (cloth_vertices).
   void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
                   Candidates& out);
 

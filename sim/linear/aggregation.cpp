@@ -8,16 +8,19 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// Calls visit(j) for every neighbour j of node i.
 template <class Visit>
 void for_neighbours(const Graph& graph, Index i, const Visit& visit) {
   for (Index k = graph.first[at(i)]; k < graph.first[at(i) + 1]; ++k) visit(graph.neighbour[at(k)]);
 }
 
-/// Fills `first` from counts in first[1 …].
+/// Turns counts in first[1 …] into offsets.
 void add_up(std::vector<Index>& first) {
   for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
 }
 
+/// Grows the groups one after the other. Seeds are taken from a queue of nodes next to finished
+/// groups, so that no gaps are left behind.
 class Growth {
  public:
   Growth(const Graph& graph, Index size)
@@ -28,10 +31,12 @@ class Growth {
   Aggregation run() {
     for (Index i = 0; i < graph_.size(); ++i) {
       seeds_.push_back(i);
-      // Nodes next to what is grouped already come first, in the order in which they were met.
+      // Nodes next to a finished group come first, in the order in which they were met.
       for (; next_seed_ < seeds_.size(); ++next_seed_)
         if (free(seeds_[next_seed_])) grow(seeds_[next_seed_]);
     }
+
+    // Groups that found no room are dissolved at the end.
     give_away_small_groups();
     return std::move(result_);
   }
@@ -39,9 +44,13 @@ class Growth {
  private:
   bool free(Index i) const { return result_.group[at(i)] == kNone; }
 
+  /// Grows one group from its seed, node by node.
   void grow(Index seed) {
     met_.clear();
     Index members = 0;
+
+    // Each new member makes its neighbours better known; the free node that most members know is
+    // next, which keeps the group compact.
     for (Index next = seed; next != kNone && members < size_; next = most_known()) {
       result_.group[at(next)] = result_.count;
       ++members;
@@ -49,6 +58,8 @@ class Growth {
         if (free(j) && known_by_[at(j)]++ == 0) met_.push_back(j);
       });
     }
+
+    // The nodes around the group become seeds of later ones.
     for (const Index j : met_) {
       known_by_[at(j)] = 0;
       if (free(j) && !std::exchange(waiting_[at(j)], 1)) seeds_.push_back(j);
@@ -57,6 +68,7 @@ class Growth {
     ++result_.count;
   }
 
+  /// The free node with the most neighbours in the growing group, or kNone.
   Index most_known() const {
     Index best = kNone;
     for (const Index j : met_)
@@ -64,11 +76,15 @@ class Growth {
     return best;
   }
 
+  /// Moves the nodes of groups below a third of the size to a neighbouring group that is neither
+  /// small nor full.
   void give_away_small_groups() {
     const Index small = size_ / 3, full = size_ + size_ / 2;
     for (Index i = 0; i < graph_.size(); ++i) {
       Index& mine = result_.group[at(i)];
       if (members_[at(mine)] > small) continue;
+
+      // Of all neighbouring groups the one with the fewest members takes the node.
       Index best = kNone;
       for_neighbours(graph_, i, [&](Index j) {
         const Index other = result_.group[at(j)];
@@ -83,6 +99,7 @@ class Growth {
     renumber();
   }
 
+  /// Numbers the groups that still have members from 0 on.
   void renumber() {
     std::vector<Index> number(members_.size(), kNone);
     result_.count = 0;
@@ -110,9 +127,13 @@ Graph graph_of_pattern(const std::vector<Index>& row_first, const std::vector<In
       for (Index k = row_first[i]; k < row_first[i + 1]; ++k)
         if (column[at(k)] != static_cast<Index>(i)) visit(i, at(column[at(k)]));
   };
+
+  // Every stored block off the diagonal is an edge, and counts at both of its ends.
   graph.first.assign(rows + 1, 0);
   for_edges([&](std::size_t i, std::size_t j) { ++graph.first[i + 1], ++graph.first[j + 1]; });
   add_up(graph.first);
+
+  // A second pass over the edges writes the neighbours to the places that the counts give.
   std::vector<Index> place(graph.first.begin(), graph.first.end() - 1);
   graph.neighbour.resize(at(graph.first.back()));
   for_edges([&](std::size_t i, std::size_t j) {
@@ -126,12 +147,15 @@ Aggregation aggregate(const Graph& graph, Index size) { return Growth(graph, siz
 
 void coarse_pattern(const Graph& graph, const Aggregation& groups, std::vector<Index>& row_first,
                     std::vector<Index>& column) {
+  // Each edge between two groups is noted in the row of the smaller number.
   std::vector<std::vector<Index>> rows(at(groups.count));
   for (Index i = 0; i < graph.size(); ++i)
     for_neighbours(graph, i, [&](Index j) {
       const Index from = groups.group[at(i)], to = groups.group[at(j)];
       if (from < to) rows[at(from)].push_back(to);
     });
+
+  // Sorted rows without duplicates, the diagonal first, are the pattern.
   row_first.assign(1, 0);
   column.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {

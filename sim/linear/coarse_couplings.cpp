@@ -11,6 +11,7 @@ ICLOTH_HD std::uint64_t key_of(Index row, Index column) {
 ICLOTH_HD Index row_of(std::uint64_t key) { return static_cast<Index>(key >> 32); }
 ICLOTH_HD Index column_of(std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); }
 
+/// Lists the pairs of nodes that a coupling acts on, with the product of their weights.
 struct FindTerms {
   View<const Coupling> couplings;
   View<const Real> inverse_mass;
@@ -22,6 +23,9 @@ struct FindTerms {
     Index nodes[4];
     Real weights[4];
     int count = 0;
+
+    // The weights of corners in the same group add up; prescribed vertices and those of obstacles
+    // take no part.
     for (int a = 0; a < 4; ++a) {
       const Index v = s.v[a];
       if (v >= group.size() || !(inverse_mass[v] > 0)) continue;
@@ -30,6 +34,8 @@ struct FindTerms {
       if (k == count) nodes[count] = group[v], weights[count++] = 0;
       weights[k] += s.w[a];
     }
+
+    // Every pair of nodes gets its share of H.
     for (int a = 0; a < count; ++a)
       for (int b = 0; b < count; ++b)
         emit(CoarseTerm{key_of(nodes[a], nodes[b]), c, weights[a] * weights[b]});
@@ -41,6 +47,7 @@ struct StartsBlock {
   ICLOTH_HD bool operator()(Index i) const { return i == 0 || terms[i].key != terms[i - 1].key; }
 };
 
+/// Sums up the terms of one block.
 struct SumBlock {
   View<const CoarseTerm> terms;
   View<const Index> starts;
@@ -58,7 +65,7 @@ struct SumBlock {
   }
 };
 
-/// First block of row i.
+/// Finds the first block of row i.
 struct FirstBlocks {
   View<const CoarseTerm> terms;
   View<const Index> starts;
@@ -76,15 +83,21 @@ void CoarseCouplings::fill(const SystemView& system, View<const Index> group, In
   const View<const Coupling> couplings = system.couplings.list;
   first_.resize(0);
   if (couplings.size() == 0) return;
+
+  // Terms are listed and sorted by their block, so that each block is a sum in a fixed order.
   collect("implicit.coarse_terms", couplings.size(),
           FindTerms{couplings, system.inverse_mass, group}, found_);
   terms_.resize(0);
   append_sorted_("implicit.coarse_sort", found_, terms_);
+
+  // Every first term of a block starts one.
   compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
   column_.resize(starts_.size());
   value_.resize(starts_.size());
   for_each("implicit.coarse_sums", starts_.size(),
            SumBlock{terms_.view(), starts_.view(), couplings, column_.view(), value_.view()});
+
+  // The rows of the blocks follow by bisection.
   first_.resize(nodes + 1);
   for_each("implicit.coarse_first", nodes + 1,
            FirstBlocks{terms_.view(), starts_.view(), first_.view()});

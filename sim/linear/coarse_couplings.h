@@ -1,4 +1,4 @@
-// What the couplings add to the finest level of the multilevel preconditioner: Pᵀ (Σ w wᵀ⊗H) P.
+// The share of the couplings in the finest level of the multilevel preconditioner: Pᵀ (Σ w wᵀ⊗H) P.
 // Layers that lie on each other can move together at no cost; couplings lumped on the diagonal
 // would hold each of them in place.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// One of the node pairs that a coupling adds weight × H to.
+/// One of the node pairs to which a coupling adds weight × H.
 struct CoarseTerm {
   std::uint64_t key;  ///< row and column
   Index coupling;
@@ -17,10 +17,11 @@ struct CoarseTerm {
 
 class CoarseCouplings {
  public:
-  /// group: node of each vertex (vertices).
+  /// Makes the rows from the couplings of the system. `group` is the node of each vertex
+  /// (vertices).
   void fill(const SystemView& system, View<const Index> group, Index nodes);
 
-  /// No rows without couplings. Valid until the next fill.
+  /// The rows; there are none without couplings. Valid until the next fill.
   CoarseRows rows() const { return {first_.view(), column_.view(), value_.view()}; }
 
  private:

@@ -1,6 +1,5 @@
 // The contacts that act in a pass of the implicit step, packed for the solver, which goes through
-// them in every iteration: most pairs in proximity only might close (8K of 111K in the sphere scene
-// of 200K triangles).
+// them in every iteration: most pairs in proximity are apart and do not act.
 #pragma once
 
 #include "kernels/contact.h"
@@ -21,7 +20,7 @@ struct CouplingView {
 
   Index size() const { return list.size(); }
 
-  /// f(c, w) for the couplings c of a vertex, ascending, w its weight there.
+  /// Calls f(c, w) for the couplings c of a vertex, ascending, where w is its weight there.
   template <class F>
   ICLOTH_HD void of_vertex(Index i, const F& f) const {
     if (list.size() == 0) return;
@@ -34,8 +33,8 @@ struct CouplingView {
 
 class Couplings {
  public:
-  /// Takes the contacts whose terms are active. `vertices`: of the cloth; corners from there on are
-  /// the obstacles' and are left out of the lists of vertices.
+  /// Takes the contacts whose terms are active. `vertices` is the number of cloth vertices; corners
+  /// from there on belong to obstacles and are left out of the lists of vertices.
   void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices);
 
   CouplingView view() const { return {list_.view(), incidence_.first(), incidence_.entries()}; }

@@ -8,20 +8,21 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-/// Constants on groups of vertices take all their difference across one row of edges, so their
-/// stiffness is too large compared to smooth functions (Braess 1995, "Towards algebraic multigrid
-/// for elliptic problems of second order"). Measured: 1 … 2 make little difference, 1.5 is best.
+/// The factor by which a piecewise constant correction is too stiff: it takes all of its difference
+/// across one row of edges, which costs more energy than a smooth function (Braess 1995, "Towards
+/// algebraic multigrid for elliptic problems of second order"). Factors from 1 to 2 make little
+/// difference; 1.5 converges fastest.
 constexpr Real kOverestimate = Real(1.5);
 
-// Vertices of a group on the finest level, nodes on the others.
+// The sizes of groups: vertices on the finest level, nodes on the others.
 constexpr Index kFirstGroup = 8, kGroup = 4;
 constexpr Index kFewNodes = 64;  // a level of so few is the last
 
 /// Sums up the blocks of one level from those of the finer one.
 struct CoarseBlocks {
   View<const Index> row, column;  ///< of the finer level
-  const Real* entries;            ///< likewise
-  View<const Real> live;          ///< of its rows: 0 for prescribed ones
+  const Real* entries;            ///< 9 a block of the finer level
+  View<const Real> live;          ///< mass of the finer rows or its inverse: 0 for prescribed ones
   View<const Index> source_first;
   View<const BlockSource> source;
   View<Mat3r> value;
@@ -43,8 +44,8 @@ struct CoarseBlocks {
   }
 };
 
-/// Completes the diagonal block of a node but for contacts: CoarseBlocks has scaled the mass with
-/// the rest.
+/// Completes the diagonal block of a node but for contacts. CoarseBlocks has divided the mass by
+/// kOverestimate with the rest, so what is missing of it is added.
 struct AddMass {
   View<const Index> child_first, child;
   View<const Real> inverse_mass;  ///< of the vertices on the finest level, else empty
@@ -69,10 +70,12 @@ struct AddMass {
   }
 };
 
+/// The damped inverse of a diagonal block, or zero for a node without free vertices.
 ICLOTH_HD Mat3r smoother_of(const Mat3r& block, Real mass) {
   return mass > 0 ? Multilevel::kDamping * inverse_spd(block) : Mat3r{};
 }
 
+/// Adds the contacts to the finest level, and makes its smoother and the lumped couplings.
 struct FinishFirstLevel {
   View<const Index> child_first, child;
   View<const Real> inverse_mass;
@@ -82,7 +85,7 @@ struct FinishFirstLevel {
   View<const Mat3r> diagonal;
   View<Mat3r> lumped, smoother;
 
-  /// Lumped is |w| H at each vertex, which is not less than w wᵀ⊗H of one side.
+  /// At each vertex |w| H is lumped, which is not less than w wᵀ⊗H of one side.
   ICLOTH_HD void operator()(Index i) const {
     Mat3r sum{};
     for (Index c = child_first[i]; c < child_first[i + 1]; ++c)
@@ -98,6 +101,7 @@ struct FinishFirstLevel {
   }
 };
 
+/// Adds the lumped couplings of the finer level to a level, and makes its smoother.
 struct FinishLevel {
   View<const Index> child_first, child;
   View<const Index> row_first;
@@ -118,6 +122,7 @@ struct FinishLevel {
   }
 };
 
+/// The row of each block.
 std::vector<Index> rows_of_blocks(const std::vector<Index>& row_first) {
   std::vector<Index> rows(static_cast<std::size_t>(row_first.back()));
   for (std::size_t i = 0; i + 1 < row_first.size(); ++i)
@@ -125,12 +130,14 @@ std::vector<Index> rows_of_blocks(const std::vector<Index>& row_first) {
   return rows;
 }
 
-/// CSR lists of the places where each value 0 … values − 1 stands, ascending.
+/// Appends the lists of the places at which each value 0 … values − 1 stands, ascending, as CSR.
 void append_places(const std::vector<Index>& value, Index values, Index offset,
                    std::vector<Index>& first, std::vector<Index>& place) {
   std::vector<Index> next(static_cast<std::size_t>(values) + 1, 0);
   for (const Index v : value) ++next[static_cast<std::size_t>(v) + 1];
   for (std::size_t v = 1; v < next.size(); ++v) next[v] += next[v - 1];
+
+  // The lists go on where those of the levels before end.
   const std::size_t before = place.size();
   for (std::size_t v = 1; v < next.size(); ++v)
     first.push_back(static_cast<Index>(before) + next[v]);
@@ -150,8 +157,9 @@ struct Layout {
   Index nodes() const { return static_cast<Index>(row_first.size()) - 1; }
   Index blocks() const { return static_cast<Index>(column.size()); }
 
-  /// Sources of the coarse blocks (first, columns) from the finer ones (fine_first, fine_columns);
-  /// the finer blocks are numbered from `offset` on.
+  /// Appends the sources of the coarse blocks (first, columns), which are the finer blocks
+  /// (fine_first, fine_columns) between their groups. The finer blocks are numbered from `offset`
+  /// on.
   void append_sources(const std::vector<Index>& fine_first, const std::vector<Index>& fine_columns,
                       Index offset, const std::vector<Index>& group,
                       const std::vector<Index>& first, const std::vector<Index>& columns) {
@@ -162,10 +170,15 @@ struct Layout {
       const Index i = fine_row[k], j = fine_columns[k];
       const Index from = group[static_cast<std::size_t>(i)],
                   to = group[static_cast<std::size_t>(j)];
+
+      // The coarse block stands in the row of the smaller group number.
       const auto row = static_cast<std::size_t>(std::min(from, to));
       const auto found = std::lower_bound(columns.begin() + first[row],
                                           columns.begin() + first[row + 1], std::max(from, to));
       const Index block = static_cast<Index>(found - columns.begin());
+
+      // A finer block between two groups adds itself, or its transpose where the order of the
+      // groups is reversed. Inside a group it adds both, as only one of the two is stored.
       const Index number = offset + static_cast<Index>(k);
       if (from <= to) {
         target.push_back(block);
@@ -176,6 +189,8 @@ struct Layout {
         contribution.push_back({number, 1});
       }
     }
+
+    // The contributions are ordered by the coarse block that they add to.
     std::vector<Index> place;
     const Index before = source_first.back();
     std::vector<Index> local{0};
@@ -184,6 +199,7 @@ struct Layout {
     for (const Index k : place) source.push_back(contribution[static_cast<std::size_t>(k)]);
   }
 
+  /// Appends the pattern of a level, with rows and blocks numbered on.
   void append_pattern(const std::vector<Index>& first, const std::vector<Index>& columns) {
     const Index node = nodes(), block = blocks();
     for (std::size_t i = 1; i < first.size(); ++i) row_first.push_back(block + first[i]);
@@ -198,10 +214,14 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
   Layout layout;
   std::vector<Index> fine_first = row_first, fine_column = column;
   while (levels_ < Multilevel::kMaxLevels) {
+    // A level groups the nodes of the finer one, until few are left or the groups no longer shrink
+    // the problem.
     const Graph graph = graph_of_pattern(fine_first, fine_column);
     if (graph.size() <= (levels_ == 0 ? 0 : kFewNodes)) break;
     const Aggregation groups = aggregate(graph, levels_ == 0 ? kFirstGroup : kGroup);
     if (groups.count > graph.size() / 2) break;  // pieces that have nothing to do with each other
+
+    // The numbers of nodes and blocks run on through all levels.
     std::vector<Index> first, columns;
     coarse_pattern(graph, groups, first, columns);
     const Index finer_node = levels_ == 0 ? 0 : level_[levels_ - 1].first;
@@ -212,13 +232,19 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
       group_.upload(groups.group);
     else
       for (const Index g : groups.group) layout.parent.push_back(layout.nodes() + g);
+
+    // The lists that the kernels follow: children of each node, sources of each block, and the
+    // pattern.
     append_places(groups.group, groups.count, finer_node, layout.child_first, layout.child);
     layout.append_sources(fine_first, fine_column, finer_block, groups.group, first, columns);
     layout.append_pattern(first, columns);
+
     fine_first.swap(first);
     fine_column.swap(columns);
     ++levels_;
   }
+
+  // The nodes of the coarsest level have no parent. All lists go to the device once.
   layout.parent.resize(static_cast<std::size_t>(layout.nodes()), kNone);
   child_first_.upload(layout.child_first);
   child_.upload(layout.child);
@@ -228,6 +254,8 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
   matrix_.set_pattern(layout.row_first, layout.column);
   source_first_.upload(layout.source_first);
   source_.upload(layout.source);
+
+  // The numbers of a system go into arrays of a fixed size.
   mass_.resize(layout.nodes());
   for (Array<Mat3r>* a : {&diagonal_, &lumped_, &smoother_}) a->resize(layout.nodes());
   for (Array<Vec3r>* a : {&b_, &z_, &t_}) a->resize(layout.nodes() + kPadding);
@@ -235,6 +263,7 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
 
 void Hierarchy::fill_matrix(const SystemView& system) {
   for (int l = 0; l < levels_; ++l) {
+    // The finest level sums up the blocks of the system, the others those of the level before.
     CoarseBlocks sum{.row = vertex_row_.view(),
                      .column = system.column,
                      .entries = system.entries,
@@ -249,6 +278,7 @@ void Hierarchy::fill_matrix(const SystemView& system) {
       sum.entries = matrix_.value.view().data()->m;
       sum.live = mass_.view();
     }
+
     for_each("implicit.coarse_blocks", blocks_[l].count, sum);
     for_each("implicit.coarse_masses", level_[l].count,
              AddMass{.child_first = child_first_.view(),
@@ -264,6 +294,8 @@ void Hierarchy::fill_matrix(const SystemView& system) {
 
 void Hierarchy::fill_contacts(const SystemView& system) {
   if (levels_ == 0) return;
+
+  // The finest level takes the couplings as they are.
   coupled_.fill(system, group_.view(), level_[0].count);
   for_each("implicit.coarse_nodes", level_[0].count,
            FinishFirstLevel{.child_first = child_first_.view(),
@@ -296,6 +328,7 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.child_first = child_first_.view();
   m.child = child_.view();
   m.parent = parent_.view();
+
   m.matrix = matrix_.view();
   m.coupled = coupled_.rows();
   m.smoother = smoother_.view();
@@ -308,7 +341,7 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
 }
 
 double Hierarchy::bytes() const {
-  // Two products a level; b, z and t are each read or written four times.
+  // A level makes two products, and reads or writes each of b, z and t four times.
   const double blocks = matrix_.column.size(), nodes = matrix_.row_first.size();
   return 2 * blocks * (sizeof(Mat3r) + 3 * sizeof(Index)) +
          nodes * (12 * sizeof(Vec3r) + 3 * sizeof(Mat3r) + 8 * sizeof(Index)) +

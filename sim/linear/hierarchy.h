@@ -15,20 +15,22 @@ struct BlockSource {
 
 class Hierarchy {
  public:
-  /// The pattern is the upper half of the matrix, the diagonal first in each row. Groups follow the
-  /// pattern alone, so vertices can become prescribed and free again.
+  /// Lays out the levels for a pattern, given as the upper half of the matrix with the diagonal
+  /// first in each row. Groups follow from the pattern alone, so vertices can become prescribed and
+  /// free again.
   void set_up(const std::vector<Index>& row_first, const std::vector<Index>& column);
 
   /// Sums up the matrices of the levels without contacts: (A − M) / kOverestimate + M at each.
   void fill_matrix(const SystemView& system);
-  /// Adds the couplings, in place of those of the call before: as they are on the finest level,
-  /// lumped on the diagonal blocks of the others.
+  /// Adds the couplings, in place of those of the call before. On the finest level they act as they
+  /// are; on the others they are lumped on the diagonal blocks.
   void fill_contacts(const SystemView& system);
 
-  /// `inverse_diagonal`: of the finest matrix. Valid until the next call of a member.
+  /// The preconditioner for the present numbers. `inverse_diagonal` belongs to the finest matrix.
+  /// Valid until the next call of a member.
   Multilevel view(const SystemView& system, View<const Mat3r> inverse_diagonal);
 
-  /// What one application reads and writes at least [B].
+  /// The bytes that one application reads and writes at least.
   double bytes() const;
 
  private:

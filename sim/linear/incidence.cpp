@@ -5,6 +5,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+/// The key of a corner is its vertex; corners that are left out sort behind all vertices.
 struct CornerKeys {
   View<const Int4> slots;
   View<std::uint64_t> keys;
@@ -19,7 +20,7 @@ struct CornerKeys {
   }
 };
 
-/// First entry of vertex i in the sorted keys.
+/// Finds the first entry of vertex i in the sorted keys.
 struct FirstEntries {
   View<const std::uint64_t> keys;
   View<Index> first;
@@ -30,6 +31,7 @@ struct FirstEntries {
   }
 };
 
+/// Number of bits of the keys that need sorting.
 int bits_for(Index largest) {
   int bits = 1;
   while (bits < 31 && (largest >> bits) != 0) ++bits;
@@ -43,6 +45,9 @@ void Incidence::build(View<const Int4> slots, Index vertices) {
   keys_.resize(corners);
   values_.resize(corners);
   first_.resize(vertices + 1);
+
+  // A stable sort of the corners by their vertex makes the lists, with ascending constraints in
+  // each.
   for_each("constraints.corners", corners,
            CornerKeys{slots, keys_.view(), values_.view(), vertices});
   sort_by_key("constraints.sort", keys_.view(), values_.view(), bits_for(vertices));

@@ -1,4 +1,4 @@
-// Lists shared by proximity and impact zones: which constraints act on a vertex.
+// Lists of the constraints that act on a vertex, shared by proximity and impact zones.
 #pragma once
 
 #include "kernels/parallel/parallel.h"
@@ -11,8 +11,8 @@ namespace icloth::ICLOTH_BUILD {
 /// the same order.
 class Incidence {
  public:
-  /// slots: vertex number of every corner (constraints), kNone or ≥ vertices for corners to leave
-  /// out.
+  /// Builds the lists. `slots` holds the vertex number of every corner (constraints), where kNone
+  /// or a number ≥ vertices marks corners to leave out.
   void build(View<const Int4> slots, Index vertices);
 
   View<const Index> first() const { return first_.view(); }     ///< (vertices + 1)
@@ -23,6 +23,7 @@ class Incidence {
   Array<std::uint64_t> keys_;
 };
 
+/// The keys of records, and the order in which they stand.
 template <class T>
 struct KeysOf {
   View<const T> records;
@@ -34,6 +35,7 @@ struct KeysOf {
   }
 };
 
+/// Copies records in a given order.
 template <class T>
 struct Permute {
   View<const T> from;

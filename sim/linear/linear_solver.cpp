@@ -6,7 +6,7 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-/// Squared length and sum of a residual.
+/// The squared length and the sum of a residual.
 struct ResidualSums {
   double rr;
   Vec3d sum;
@@ -15,14 +15,14 @@ struct ResidualSums {
   }
 };
 
-/// Squared lengths of the right-hand side and of the start.
+/// The squared lengths of the right-hand side and of the start.
 struct Lengths {
   double bb, xx;
   ICLOTH_HD friend Lengths operator+(Lengths a, Lengths b) { return {a.bb + b.bb, a.xx + b.xx}; }
 };
 
-/// The whole solve, for one team: every thread goes through the same iterations and has the same
-/// scalars, so that nothing has to be read back in between.
+/// The whole solve by preconditioned conjugate gradients, for one team. Every thread goes through
+/// the same iterations and has the same scalars, so that nothing has to be read back in between.
 template <class Preconditioner>
 struct ConjugateGradients {
   SystemView system;
@@ -35,9 +35,11 @@ struct ConjugateGradients {
   int max_iterations;
   View<LinearSolution> solution;  ///< (1)
 
-  /// q = A v; returns v·Av.
+  /// Sets q = A v and returns v·Av.
   template <class Team>
   ICLOTH_HD double multiply(Team& team, View<const Vec3r> v) const {
+    // Contacts are applied in two halves, first H Σ w v of each coupling, so that a vertex can
+    // gather them in a fixed order.
     if (contact.size() > 0) {
       team.for_each(contact.size(), [&](Index c) {
         Vec3r sum{};
@@ -48,6 +50,8 @@ struct ConjugateGradients {
         contact[c] = coupling.h * sum;
       });
     }
+
+    // Each row gathers its blocks and its contacts; prescribed vertices have no row.
     return team.reduce(
         b.size(), 0.0,
         [&](Index i) {
@@ -63,11 +67,12 @@ struct ConjugateGradients {
         Sum{});
   }
 
-  /// Row i of r = b − A x; q is A x.
+  /// Row i of r = b − A x, where q is A x.
   ICLOTH_HD Vec3r true_residual(Index i) const {
     return r[i] = system.inverse_mass[i] > 0 ? b[i] - q[i] : Vec3r{};
   }
 
+  /// The true residual of x, summed up.
   template <class Team>
   ICLOTH_HD ResidualSums true_residuals(Team& team) const {
     multiply(team, x);
@@ -83,6 +88,8 @@ struct ConjugateGradients {
   template <class Team>
   ICLOTH_HD void operator()(Team& team) const {
     const Index n = b.size();
+
+    // Both lengths decide how to begin: without a right-hand side the solution is zero.
     const Lengths lengths = team.reduce(
         n, Lengths{0, 0},
         [&](Index i) {
@@ -91,33 +98,47 @@ struct ConjugateGradients {
         Sum{});
     LinearSolution result;
     if (lengths.bb != 0) result = iterate(team, lengths);
-    // No numbers in, no numbers out: an x that merely stayed zero would pass for a solution.
+
+    // Without numbers in there are no numbers out: an x that merely stayed zero would pass for a
+    // solution.
     if (!(result.residual - result.residual == 0))
       team.for_each(n, [&](Index i) { x[i].x = static_cast<Real>(NAN); });
     team.single([&] { solution[0] = result; });
   }
 
+  /// Iterates from x, whatever it holds, and leaves the best x that was seen.
   template <class Team>
   ICLOTH_HD LinearSolution iterate(Team& team, Lengths lengths) const {
     constexpr int kReplaceEvery = 50;  // iterations between true residuals
     constexpr int kPatience = 40;      // true residuals in a row without gain: rounding rules
     const Index n = b.size();
     const double bb = lengths.bb;
+
+    // The first residual, for which a start from zero saves a product.
     LinearSolution result;
-    if (lengths.xx == 0)  // a product saved
+    if (lengths.xx == 0)
       team.for_each(n, [&](Index i) { q[i] = Vec3r{}; });
     else
       multiply(team, x);
+
     Dots dots = precondition(
         team, [&](Index i) { return true_residual(i); }, r, z);
+
+    // The first direction is the preconditioned residual. The start is the best x so far.
     team.for_each(n, [&](Index i) { p[i] = z[i], best[i] = x[i]; });
     double best_rr = dots.rr;
     int idle = 0;
+
+    // The step along p minimises the energy; it fails when rounding has eaten the curvature, or at
+    // NaN.
     while (result.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {
       const double pq = multiply(team, p.sub(0, n));
-      if (!(pq > 0) || !(dots.rz > 0)) break;  // rounding has eaten the curvature, or NaN
+      if (!(pq > 0) || !(dots.rz > 0)) break;
       const double rz = dots.rz;
       const Real alpha = static_cast<Real>(rz / pq);
+
+      // Now and then the residual is computed anew, since the one that is carried along drifts away
+      // by rounding. When it stops improving, rounding rules and the iteration ends.
       if (++result.iterations % kReplaceEvery == 0) {
         team.for_each(n, [&](Index i) { x[i] += alpha * p[i]; });
         multiply(team, x);
@@ -129,6 +150,7 @@ struct ConjugateGradients {
         } else if (++idle == kPatience) {
           break;
         }
+
       } else {
         dots = precondition(
             team,
@@ -138,11 +160,15 @@ struct ConjugateGradients {
             },
             r, z);
       }
+
+      // The next direction is conjugate to the last one.
       const Real beta = static_cast<Real>(dots.rz / rz);
       team.for_each(n, [&](Index i) { p[i] = z[i] + beta * p[i]; });
     }
+
+    // In single precision a very stiff system can run away from the solution, so the best x is
+    // returned.
     ResidualSums end = true_residuals(team);
-    // In single precision a very stiff system can run away from the solution.
     if (!(end.rr <= best_rr)) {
       team.for_each(n, [&](Index i) { x[i] = best[i]; });
       end = true_residuals(team);
@@ -153,8 +179,8 @@ struct ConjugateGradients {
   }
 };
 
-/// What one iteration has to read and write when every number is moved once: the blocks and their
-/// places, the contacts, and 15 vectors and a block for each row.
+/// The bytes that one iteration has to read and write when every number is moved once: the blocks
+/// and their places, the contacts, and 15 vectors and a block for each row.
 double bytes_per_iteration(const SystemView& system, Index rows) {
   const double blocks = system.column.size(), others = system.lower_column.size();
   return blocks * (9 * sizeof(Real) + sizeof(Index)) + 2 * sizeof(Index) * others +
@@ -164,7 +190,8 @@ double bytes_per_iteration(const SystemView& system, Index rows) {
              (15 * sizeof(Vec3r) + sizeof(Mat3r) + sizeof(Real) + 3 * sizeof(Index));
 }
 
-/// The residual that the iterations carry along differs from the true one by rounding.
+/// Factor by which the true residual may exceed the tolerance: the one that the iterations carry
+/// along differs from it by rounding.
 constexpr double kMissed = 1.5;
 
 }  // namespace
@@ -176,6 +203,8 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   for (Array<Vec3r>* a : {&r_, &z_, &p_, &q_, &best_}) a->resize(n + kPadding);
   contact_.resize(couplings);
   solution_.resize(1);
+
+  // One kernel makes the whole solve, and its result is read back.
   const auto iterate = [&](const auto& preconditioner, int max_iterations) {
     with_device_team(
         "implicit.solve", std::max(n, couplings),
@@ -198,6 +227,8 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
     solution_.download_range(0, {&solution, 1});
     return solution;
   };
+
+  // The multilevel preconditioner comes first where it was chosen.
   const double bytes = bytes_per_iteration(system, n);
   LinearSolution coarse;
   if (options.preconditioner == Preconditioner::multilevel) {
@@ -206,11 +237,14 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
     iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
     coarse = finish();
     coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());
+
     // Where rounding hides the masses in the sums of a level, block-Jacobi gets further.
     if (!(coarse.residual > kMissed * options.tolerance) ||
         coarse.iterations >= options.max_iterations)
       return coarse;
   }
+
+  // Block-Jacobi goes on from the x that it left, with the iterations that are left.
   iterate(BlockJacobi{inverse_diagonal}, options.max_iterations - coarse.iterations);
   LinearSolution solution = finish();
   solution.bytes = coarse.bytes + solution.iterations * bytes;

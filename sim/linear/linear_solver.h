@@ -10,8 +10,9 @@ namespace icloth::ICLOTH_BUILD {
 struct LinearSolution {
   Index iterations = 0;
   double residual = 0;  ///< ‖b − Ax‖₂ / ‖b‖₂, computed anew at the end
-  Vec3d lost;           ///< Σ over the rows of b − Ax, likewise [N·s]
-  double bytes = 0;     ///< that the iterations had to read and write at least
+
+  Vec3d lost;        ///< Σ over the rows of b − Ax, computed anew [N·s]
+  double bytes = 0;  ///< that the iterations had to read and write at least
 };
 
 struct SolveOptions {
@@ -28,9 +29,10 @@ class LinearSolver {
     hierarchy_.set_up(row_first, column);
   }
 
-  /// Solves for x (Δv), starting from what it holds; `inverse_diagonal`: of the whole system's
-  /// diagonal blocks, 0 for prescribed vertices (rows). x is given with kPadding elements more
-  /// than b. The result is never further from the solution, by its residual, than the start.
+  /// Solves for x (Δv), starting from the numbers that it holds. `inverse_diagonal` holds the
+  /// inverse diagonal blocks of the whole system, 0 for prescribed vertices (rows). `padded` is x
+  /// with kPadding elements more than b. The result is never further from the solution, by its
+  /// residual, than the start.
   LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                        View<const Vec3r> b, View<Vec3r> padded, const SolveOptions& options);
 

@@ -6,9 +6,9 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// y = (A + Σ couplings w wᵀ⊗H) x restricted to the free vertices. A − M, M the masses, is a sum of
-/// positive semi-definite terms of at most 4 vertices each (the multilevel preconditioner counts on
-/// it).
+/// The operator y = (A + Σ couplings w wᵀ⊗H) x, restricted to the free vertices. With M the masses,
+/// A − M is a sum of positive semi-definite terms of at most 4 vertices each, which the multilevel
+/// preconditioner relies on.
 struct SystemView : MatrixView {
   View<const Real> inverse_mass;  ///< 0: prescribed, its Δv is zero
   CouplingView couplings;

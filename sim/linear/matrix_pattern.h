@@ -1,4 +1,4 @@
-// Symmetric block-sparse matrix of the implicit stage and of the levels of its preconditioner.
+// The symmetric block-sparse matrix of the implicit stage and of the levels of its preconditioner.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,14 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Symmetric, 3×3 blocks, fixed pattern: blocks (i, j) with j ≥ i, rows of ascending columns, the
-/// diagonal block first. Half the bytes, and bytes are what a product costs.
+/// A symmetric matrix of 3×3 blocks with a fixed pattern: the blocks (i, j) with j ≥ i, rows of
+/// ascending columns, the diagonal block first. Storing one half takes half the bytes, and bytes
+/// are the cost of a product.
 struct BlockMatrix {
   Array<Index> row_first;  ///< (rows + 1)
   Array<Index> column;     ///< (blocks)
   Array<Mat3r> value;      ///< (blocks + kPadding)
-  /// The blocks left of the diagonal: those of other rows, to be transposed.
+  /// The blocks left of the diagonal are those of other rows, to be transposed.
   Array<Index> lower_first;   ///< (rows + 1)
   Array<Index> lower_column;  ///< (blocks − rows)
   Array<Index> lower_block;   ///< number of the stored block (lower_column, row)

@@ -1,5 +1,5 @@
-// A comparison of the solvers of impact zones on a made-up zone of any size, away from any scene: it
-// tells how near each comes to the optimum, and in what time.
+// A comparison of the solvers of impact zones on a made-up zone of any size, away from any scene:
+// it tells how near each comes to the optimum, and in what time.
 #pragma once
 
 #include "kernels/parallel/platform.h"
@@ -9,7 +9,7 @@ namespace icloth {
 
 struct ZoneTrial {
   Index vertices = 0, constraints = 0, iterations = 0;
-  double violation = 0;        ///< largest δ − n·g left [m]
+  double violation = 0;          ///< largest δ − n·g left [m]
   double complementarity = 0;    ///< see ZoneResult [m]
   double momentum_residual = 0;  ///< see ZoneResult
   double objective = 0;          ///< ½ Σ a |x − x*|² [m²]
