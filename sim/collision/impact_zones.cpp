@@ -104,7 +104,8 @@ struct ZoneResultAt {
 struct WorseResult {
   ICLOTH_HD ZoneResult operator()(ZoneResult a, ZoneResult b) const {
     return {Max{}(a.iterations, b.iterations), Max{}(a.violation, b.violation),
-            Max{}(a.complementarity, b.complementarity), Max{}(a.momentum_residual, b.momentum_residual)};
+            Max{}(a.complementarity, b.complementarity),
+            Max{}(a.momentum_residual, b.momentum_residual)};
   }
 };
 
