@@ -176,7 +176,7 @@ void Solver::accept_substep(StepReport& report, double dt) {
     report.momentum_error =
         std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
-  implicit_.end(state_);
+  implicit_.finish_substep(state_);
   work_ += implicit_.work();
   if (impact_zones_.corrected()) work_ += zone_work(dt);
 }

@@ -40,9 +40,9 @@ class Solver final : public Simulator {
  private:
   /// One attempt at a substep; false when impacts are left or numbers are not finite.
   bool try_substep(StepReport& report, double start, double dt, bool last_resort);
-  bool resolve_by_zones(StepContext& step);
-  bool resolve_by_rollback(StepContext& step);
-  void find_impacts(StepContext& step, bool first_round);
+  bool resolve_by_zones(SubstepContext& step);
+  bool resolve_by_rollback(SubstepContext& step);
+  void find_impacts(SubstepContext& step, bool first_round);
   void begin_substep(double start, double dt);
   void accept_substep(StepReport& report, double dt);
   double zone_work(double dt);

@@ -2,7 +2,7 @@
 //
 //   begin_substep             obstacles at t and t + dt, x0 ← x1
 //   proximity                 (1) VF and EE pairs closer than the thickness        Section 2.5
-//   implicit                  (2) rubbing yarns are dragged along;
+//   implicit                  (2) anchors of the yarn friction follow;
 //                                 candidate x1, may penetrate                      Section 2.4–2.5
 //   repeat
 //     ccd                     (3) impacts on the segments x0 → x1; first all, then only pairs
@@ -35,7 +35,7 @@ void timed(double& milliseconds, const Stage& stage) {
 
 bool Solver::try_substep(StepReport& report, double start, double dt, bool last_resort) {
   begin_substep(start, dt);
-  StepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
 
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
   timed(report.ms_proximity, [&] {
@@ -47,16 +47,17 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   report.finite = all_finite(state_);
   if (!report.finite) return false;
-  // Half the step makes a quarter of the strain that a linear solve does not see.
-  if (!last_resort && implicit_.missed_tension() > parameters_.implicit.max_missed_tension)
+  // Half the step leaves a quarter of the strain that the linear solve does not see.
+  if (!last_resort &&
+      implicit_.linearization_error() > parameters_.implicit.max_linearization_error)
     return false;
 
   return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
 }
 
-bool Solver::resolve_by_zones(StepContext& step) {
+bool Solver::resolve_by_zones(SubstepContext& step) {
   StepReport& report = step.report;
-  impact_zones_.begin_step();
+  impact_zones_.begin_substep();
   for (int round = 0;; ++round) {
     find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
@@ -75,7 +76,7 @@ bool Solver::resolve_by_zones(StepContext& step) {
 /// What still collides stays where it was. With resting obstacles this always ends, at the latest
 /// in the state of the start; where nothing is left to put back, moving obstacles squeeze the
 /// cloth.
-bool Solver::resolve_by_rollback(StepContext& step) {
+bool Solver::resolve_by_rollback(SubstepContext& step) {
   if (!step.report.finite || !parameters_.impact_zones.enabled) return false;
   impact_zones_.back_to_candidate(step);
   find_impacts(step, true);
@@ -91,7 +92,7 @@ bool Solver::resolve_by_rollback(StepContext& step) {
 }
 
 /// All pairs in the first round; later, unless told otherwise, those with a dirty vertex.
-void Solver::find_impacts(StepContext& step, bool first_round) {
+void Solver::find_impacts(SubstepContext& step, bool first_round) {
   StepReport& report = step.report;
   const bool incremental = !first_round && parameters_.ccd.incremental;
   timed(report.ms_broad_phase, [&] {

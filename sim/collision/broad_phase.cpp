@@ -26,7 +26,7 @@ struct Paths {
   }
 };
 
-Paths make_paths(const StepContext& step, bool predicted) {
+Paths make_paths(const SubstepContext& step, bool predicted) {
   const Array<Vec3r>& to = predicted ? step.state.v : step.state.x1;
   return {.from = step.state.x0.view(),
           .to = to.view(),
@@ -89,7 +89,7 @@ struct Outside {
 
 }  // namespace
 
-void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
+void BroadPhase::make_boxes(SubstepContext& step, bool predicted, Real pad) {
   const Topology& mesh = step.mesh;
 
   // Boxes of vertices are made first; those of faces and edges are unions of them.
@@ -114,12 +114,12 @@ void BroadPhase::make_boxes(StepContext& step, bool predicted, Real pad) {
 
 /// The distance by which paths may exceed the expected ones without making the lists anew: the
 /// repulsion reaches h, and the solve differs from the prediction.
-Real BroadPhase::slack(const StepContext& step) {
+Real BroadPhase::slack(const SubstepContext& step) {
   return std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
                    static_cast<Real>(0.2) * step.mesh.median_edge});
 }
 
-void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dirty) {
+void BroadPhase::find_candidates(SubstepContext& step, View<const std::uint8_t> dirty) {
   const bool all = dirty.size() == 0;
   candidates_.clear();
   tree_.count_tests = step.parameters.broad_phase.count_tests;
@@ -141,26 +141,26 @@ void BroadPhase::find_candidates(StepContext& step, View<const std::uint8_t> dir
   if (step.parameters.broad_phase.count_tests) step.report.box_tests += candidates_.box_tests;
 }
 
-bool BroadPhase::covers(StepContext& step, bool predicted, Real margin) const {
+bool BroadPhase::covers(SubstepContext& step, bool predicted, Real margin) const {
   return boxes_valid_ &&
          reduce("broad_phase.outside", step.mesh.vertices, Index{0},
                 Outside{make_paths(step, predicted), vertex_box_.view(), margin}, Sum{}) == 0;
 }
 
-void BroadPhase::prepare(StepContext& step) {
+void BroadPhase::prepare(SubstepContext& step) {
   // Two elements closer than h must overlap, so each end needs half of h around it.
   if (complete_ && covers(step, true, static_cast<Real>(0.5) * step.thickness())) return;
   make_boxes(step, true, slack(step));
   find_candidates(step, {});
 }
 
-void BroadPhase::cover_candidate(StepContext& step) {
+void BroadPhase::cover_candidate(SubstepContext& step) {
   if (complete_ && covers(step, false, Real(0))) return;
   make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }
 
-void BroadPhase::cover_dirty(StepContext& step, View<const std::uint8_t> dirty) {
+void BroadPhase::cover_dirty(SubstepContext& step, View<const std::uint8_t> dirty) {
   const bool covered = covers(step, false, Real(0));
   if (covered && complete_) return;
   // There is no slack here: lists of dirty pairs serve one round, and tight boxes keep them short.
@@ -168,7 +168,7 @@ void BroadPhase::cover_dirty(StepContext& step, View<const std::uint8_t> dirty) 
   find_candidates(step, dirty);
 }
 
-void BroadPhase::cover_again(StepContext& step) {
+void BroadPhase::cover_again(SubstepContext& step) {
   make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }

@@ -17,14 +17,14 @@ class BroadPhase {
  public:
   /// Makes the candidate lists cover x0 → x0 + dt·v and x0 ± thickness; does nothing while the
   /// present lists already do.
-  void prepare(StepContext& step);
+  void prepare(SubstepContext& step);
   /// Makes the candidate lists cover x0 → x1 as it is now.
-  void cover_candidate(StepContext& step);
+  void cover_candidate(SubstepContext& step);
   /// Makes the lists cover x0 → x1 for pairs with a dirty vertex (cloth_vertices) alone, where they
   /// do not cover it already: the clean pairs have been tested.
-  void cover_dirty(StepContext& step, View<const std::uint8_t> dirty);
+  void cover_dirty(SubstepContext& step, View<const std::uint8_t> dirty);
   /// Makes boxes and lists anew even where they are valid, as a detection without coherence would.
-  void cover_again(StepContext& step);
+  void cover_again(SubstepContext& step);
   /// Forgets the lists (the state was set from outside).
   void invalidate() { boxes_valid_ = complete_ = false; }
 
@@ -36,13 +36,13 @@ class BroadPhase {
 
  private:
   /// True while every path, with `margin` around it, lies in its vertex's trusted region.
-  bool covers(StepContext& step, bool predicted, Real margin) const;
+  bool covers(SubstepContext& step, bool predicted, Real margin) const;
   /// The slack of the boxes, which decides how long the lists last.
-  static Real slack(const StepContext& step);
+  static Real slack(const SubstepContext& step);
   /// Makes the boxes of all elements, and updates the trees.
-  void make_boxes(StepContext& step, bool predicted, Real pad);
+  void make_boxes(SubstepContext& step, bool predicted, Real pad);
   /// Fills the lists from the boxes. `dirty` is empty for all pairs.
-  void find_candidates(StepContext& step, View<const std::uint8_t> dirty);
+  void find_candidates(SubstepContext& step, View<const std::uint8_t> dirty);
   ElementBoxes boxes() const { return {vertex_box_.view(), face_box_.view(), edge_box_.view()}; }
 
   Array<Box> vertex_box_;  ///< trusted region of each vertex (vertices), make_boxes

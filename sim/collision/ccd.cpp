@@ -92,7 +92,7 @@ struct TestEdgeEdge {
 
 }  // namespace
 
-void Ccd::find(StepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
+void Ccd::find(SubstepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
                bool incremental) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;

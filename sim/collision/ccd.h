@@ -16,7 +16,7 @@ namespace icloth::ICLOTH_BUILD {
 class Ccd {
  public:
   /// Finds the impacts, sorted by key. `dirty` (cloth_vertices) is only read when `incremental`.
-  void find(StepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
+  void find(SubstepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
             bool incremental);
 
   const Array<Impact>& impacts() const { return impacts_; }

@@ -97,7 +97,7 @@ Collisions detect_collisions(std::span<const Vec3d> start, std::span<const Vec3d
 
   // The broad phase covers the straight paths from start to end.
   StepReport report;
-  StepContext step{mesh, parameters, state, report, Real(1)};
+  SubstepContext step{mesh, parameters, state, report, Real(1), 0.0};
   BroadPhase broad_phase;
   broad_phase.cover_candidate(step);
   collisions.ms_broad_phase = milliseconds_since(clock);

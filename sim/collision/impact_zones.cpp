@@ -124,7 +124,7 @@ void ImpactZones::merge(const Array<Impact>& impacts) {
            TakeNewest{sorted_.view(), picked_.view(), kept_.view()});
 }
 
-void ImpactZones::label_zones(const StepContext& step) {
+void ImpactZones::label_zones(const SubstepContext& step) {
   const Index n = kept_.size(), vertices = step.mesh.cloth_vertices;
   slots_.resize(n);
   for_each("impact_zones.corners", n,
@@ -151,7 +151,7 @@ void ImpactZones::label_zones(const StepContext& step) {
   }
 }
 
-void ImpactZones::order_by_zone(const StepContext& step) {
+void ImpactZones::order_by_zone(const SubstepContext& step) {
   const Index n = kept_.size(), active = unsorted_active_.size();
   const State& s = step.state;
   const auto sort_by_label = [&](const Array<Index>& label, Array<Index>& order,
@@ -196,7 +196,7 @@ void ImpactZones::solve_zones(const SolveZone<Solver>& solve) {
     with_device_team("impact_zones.solve_large", size, SolveLargeZone<Solver>{solve, zone});
 }
 
-void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
+void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
   State& s = step.state;
   const Parameters& p = step.parameters;
   corrected_ = true;
@@ -239,7 +239,7 @@ void ImpactZones::solve(StepContext& step, const Array<Impact>& impacts) {
                              IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
 }
 
-void ImpactZones::store(StepContext& step) {
+void ImpactZones::store(SubstepContext& step) {
   State& s = step.state;
   largest_correction_ = reduce("impact_zones.correction", active_.size(), Real(0),
                                Correction{x_.view(), target_.view()}, Max{});
@@ -279,13 +279,13 @@ void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
   larger(report.zone_momentum_residual, worst.momentum_residual);
 }
 
-void ImpactZones::back_to_candidate(StepContext& step) {
+void ImpactZones::back_to_candidate(SubstepContext& step) {
   for_each("impact_zones.candidate", step.mesh.cloth_vertices,
            TakeCandidate{step.state.candidate.view(), step.state.x1.view()});
   corrected_ = false;
 }
 
-bool ImpactZones::roll_back(StepContext& step, const Array<Impact>& impacts) {
+bool ImpactZones::roll_back(SubstepContext& step, const Array<Impact>& impacts) {
   const Index vertices = step.mesh.cloth_vertices;
   corrected_ = true;
   slots_.resize(impacts.size());

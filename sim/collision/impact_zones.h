@@ -11,20 +11,20 @@ namespace icloth::ICLOTH_BUILD {
 
 class ImpactZones {
  public:
-  /// Forgets the constraints of the last step.
-  void begin_step() {
+  /// Forgets the constraints of the last substep.
+  void begin_substep() {
     kept_.resize(0);
     corrected_ = false;
   }
 
   /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
-  void solve(StepContext& step, const Array<Impact>& impacts);
+  void solve(SubstepContext& step, const Array<Impact>& impacts);
 
   /// x1 as the implicit step left it.
-  void back_to_candidate(StepContext& step);
+  void back_to_candidate(SubstepContext& step);
   /// Sets every vertex of a colliding pair back to where it was at the start; writes dirty(). False
   /// when all of them were there already.
-  bool roll_back(StepContext& step, const Array<Impact>& impacts);
+  bool roll_back(SubstepContext& step, const Array<Impact>& impacts);
 
   /// Whether x1 may be another than the implicit step left it.
   bool corrected() const { return corrected_; }
@@ -36,11 +36,11 @@ class ImpactZones {
 
  private:
   void merge(const Array<Impact>& impacts);
-  void label_zones(const StepContext& step);
-  void order_by_zone(const StepContext& step);
+  void label_zones(const SubstepContext& step);
+  void order_by_zone(const SubstepContext& step);
   template <template <class> class Solver>
   void solve_zones(const SolveZone<Solver>& solve);
-  void store(StepContext& step);
+  void store(SubstepContext& step);
   void drop_idle();
   void report(StepReport& report, Index dynamic_faces) const;
 

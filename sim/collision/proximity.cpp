@@ -229,7 +229,7 @@ constexpr double kRampTime = 0.2;  // [s]
 }  // namespace
 
 /// Layers that start closer than h would be thrown apart by a repulsion that acts at once.
-void Proximity::note_start_gaps(const StepContext& step) {
+void Proximity::note_start_gaps(const SubstepContext& step) {
   Array<Int4> slots(contacts_.size());
   for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots.view()});
   Incidence incidence;
@@ -242,7 +242,7 @@ void Proximity::note_start_gaps(const StepContext& step) {
   if (close == 0) start_gap_.resize(0);
 }
 
-void Proximity::ramp_thickness(const StepContext& step) {
+void Proximity::ramp_thickness(const SubstepContext& step) {
   const double share = std::fmin(step.time / kRampTime, 1.0);
   for_each("proximity.ramp", contacts_.size(),
            RampThickness{start_gap_.view(), contacts_.view(), static_cast<Real>(share)});
@@ -267,7 +267,7 @@ void Proximity::clear() {
   rubs_ = false;
 }
 
-void Proximity::find(StepContext& step, const BroadPhase& broad_phase) {
+void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Real h = step.thickness();

@@ -18,7 +18,7 @@ struct HeldForce {
 class Proximity {
  public:
   /// Finds the contacts of the step at x0, sorted by pair key.
-  void find(StepContext& step, const BroadPhase& broad_phase);
+  void find(SubstepContext& step, const BroadPhase& broad_phase);
   /// No contacts in this step.
   void clear();
   /// Keeps what the contacts hold after the accepted motion x0 → x1, for the next find.
@@ -32,8 +32,8 @@ class Proximity {
 
  private:
   void recall_friction();
-  void note_start_gaps(const StepContext& step);
-  void ramp_thickness(const StepContext& step);
+  void note_start_gaps(const SubstepContext& step);
+  void ramp_thickness(const SubstepContext& step);
 
   Array<Contact> contacts_;  ///< (contacts), find
   Array<Contact> found_;

@@ -58,20 +58,23 @@ ICLOTH_HD inline AirForce air_force(const Wind& wind, const Vec3r xs[3], const V
       (stiff - drag) * outer(n, n) + Mat3r::identity(drag)};
 }
 
-/// Where the elastic forces are linearised: f(x1) ≈ f(at) − K(at) (x1 − at), stiffness damping with
-/// the time constant d included, x1 = at + ahead + dt Δv. The friction between yarns likewise,
-/// undamped; its K is the secant from the anchor to x1 as foreseen: at + ahead, once moved() at.
+/// Where the elastic forces are linearised: f(x1) ≈ f(at) − K(at) (x1 − at + d v1), d the time
+/// constant of the stiffness damping, x1 = at + predicted + dt Δv. Yarn friction is linearised in
+/// the same way without damping. Its K is the secant from the anchor to the predicted shape, at +
+/// predicted, in the first iteration, and from the anchor to `at` in later ones.
 struct Linearization {
-  View<const Vec3r> start;  ///< x0; the coefficients of the fabric are those of this shape [m]
-  View<const Vec3r> at;     ///< [m]
-  View<const Vec3r> ahead;  ///< [m]
-  View<const Vec3r> v;      ///< before the step [m/s]
-  Real dt;                  ///< [s]
+  View<const Vec3r> start;      ///< x0; the coefficients of the fabric are those of this shape [m]
+  View<const Vec3r> at;         ///< [m]
+  View<const Vec3r> predicted;  ///< motion from `at` to x1 with Δv = 0 [m]
+  View<const Vec3r> v;          ///< before the step [m/s]
+  Real dt;                      ///< [s]
 
   /// After the first of several iterations.
   ICLOTH_HD bool moved() const { return at.data() != start.data(); }
-  /// What K is multiplied with on the right-hand side, ahead + d v [m].
-  ICLOTH_HD Vec3r lead(Index i, Real damping) const { return ahead[i] + damping * v[i]; }
+  /// Factor of K on the right-hand side, predicted + d v [m].
+  ICLOTH_HD Vec3r damped_motion(Index i, Real damping) const {
+    return predicted[i] + damping * v[i];
+  }
 };
 
 struct MembraneTerms {
@@ -84,12 +87,13 @@ struct MembraneTerms {
   View<FaceTerm> term;
   Real damping_extra;
   Wind wind;
-  View<const YarnAnchor> yarns{};  ///< empty where no yarns rub
+  View<const YarnAnchor> yarns{};  ///< empty without yarn friction
 
-  /// What of the stiffness h = dt K between two corners comes with the motion ahead.
-  ICLOTH_HD void hold_back(FaceTerm& t, Int3 f, int a, int b, const Mat3r& h, Real damping) const {
-    t.impulse[a] -= h * point.lead(f.v[b], damping);
-    if (b > a) t.impulse[b] -= transpose(h) * point.lead(f.v[a], damping);
+  /// Impulse of the stiffness h = dt K between two corners over the predicted motion.
+  ICLOTH_HD void add_predicted_impulse(FaceTerm& t, Int3 f, int a, int b, const Mat3r& h,
+                                       Real damping) const {
+    t.impulse[a] -= h * point.damped_motion(f.v[b], damping);
+    if (b > a) t.impulse[b] -= transpose(h) * point.damped_motion(f.v[a], damping);
   }
 
   ICLOTH_HD void operator()(Index i) const {
@@ -118,7 +122,7 @@ struct MembraneTerms {
     if (yarns.size() > 0 && cloth.shear_friction > 0) {
       const Real away = g.uv - yarns[i].shear;
       friction.k33 =
-          shear_friction_stiffness(cloth, point.moved() ? away : away + shear_ahead(i, at, g));
+          shear_friction_stiffness(cloth, point.moved() ? away : away + predicted_shear(i, at, g));
       held.uv = friction.k33 * away;
     }
     const Sym2 positive = positive_part(s);
@@ -132,7 +136,7 @@ struct MembraneTerms {
         if (limit.active) h += limit_block(principal, limit, area[i], a, b);
         h = dt * h;
         t.block[block_slot(a, b)] = (dt + damping) * h;
-        hold_back(t, f, a, b, h, damping);
+        add_predicted_impulse(t, f, a, b, h, damping);
       }
     }
     if (friction.k33 > 0) add_friction(t, i, frame, friction, positive_part(s + held) - positive);
@@ -141,9 +145,9 @@ struct MembraneTerms {
   }
 
   /// How much G_uv changes where the cloth goes on as before.
-  ICLOTH_HD Real shear_ahead(Index i, const Vec3r at[3], Sym2 g) const {
+  ICLOTH_HD Real predicted_shear(Index i, const Vec3r at[3], Sym2 g) const {
     Vec3r end[3];
-    for (int a = 0; a < 3; ++a) end[a] = at[a] + point.ahead[face[i].v[a]];
+    for (int a = 0; a < 3; ++a) end[a] = at[a] + point.predicted[face[i].v[a]];
     return green_strain(face_frame(end, inverse[i].m)).uv - g.uv;
   }
 
@@ -155,7 +159,7 @@ struct MembraneTerms {
       for (int b = a; b < 3; ++b) {
         const Mat3r h = point.dt * membrane_block(frame, friction, positive, area[i], a, b);
         t.block[block_slot(a, b)] += point.dt * h;
-        hold_back(t, face[i], a, b, h, 0);
+        add_predicted_impulse(t, face[i], a, b, h, 0);
       }
     }
   }
@@ -184,12 +188,13 @@ struct BendingTerms {
     const Fabric &f0 = fabric[h.fabric0], &f1 = fabric[h.fabric1];
     const Real k = hinge_stiffness(f0, f1, h, start);
     const Real damping = std::fmin(f0.damping, f1.damping) + damping_extra;
-    Real lead = 0;
-    for (int a = 0; a < 4; ++a) lead += dot(angle.gradient[a], point.lead(h.v.v[a], damping));
+    Real turn = 0;
+    for (int a = 0; a < 4; ++a)
+      turn += dot(angle.gradient[a], point.damped_motion(h.v.v[a], damping));
     HingeTerm t;
     for (int a = 0; a < 4; ++a) t.gradient[a] = angle.gradient[a];
     t.k = point.dt * (point.dt + damping) * k;
-    t.s = -point.dt * k * (angle.theta - h.angle + lead);
+    t.s = -point.dt * k * (angle.theta - h.angle + turn);
     term[i] = t;
   }
 };

@@ -50,7 +50,7 @@ bool bends(const Fabric& f) {
   return f.bending_friction > 0;
 }
 
-bool rubs(const Fabric& f) { return f.bending_friction > 0 || f.shear_friction > 0; }
+bool has_yarn_friction(const Fabric& f) { return f.bending_friction > 0 || f.shear_friction > 0; }
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
   }
   mesh.fabric.upload(fabrics);
   mesh.bends = std::ranges::any_of(fabrics, bends);
-  mesh.yarns_rub = std::ranges::any_of(fabrics, rubs);
+  mesh.has_yarn_friction = std::ranges::any_of(fabrics, has_yarn_friction);
 }
 
 void upload_plates(Topology& mesh, const World& world) {

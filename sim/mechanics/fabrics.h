@@ -7,8 +7,8 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Writes mesh.fabric, mesh.bends, mesh.yarns_rub and mesh.stiffness_table: the materials of the
-/// cloths with the scales and choices of the parameters.
+/// Writes mesh.fabric, mesh.bends, mesh.has_yarn_friction and mesh.stiffness_table: the materials
+/// of the cloths with the scales and choices of the parameters.
 void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parameters);
 
 /// Writes mesh.plate and mesh.hinge_slots, once.

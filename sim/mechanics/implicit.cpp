@@ -102,25 +102,26 @@ struct ContactTerms {
   }
 };
 
-/// How far a solve contradicts what was assumed for it.
-struct Contradiction {
+/// How far the contact forces of a solve are from those of the contact law at its solution.
+struct ContactResidual {
   double error;  ///< contact forces that acted and should not have, or the other way round [N]
   double load;   ///< what the contacts carry [N]
   double work;   ///< of the contacts on the cloth [J]
-  ICLOTH_HD friend Contradiction operator+(Contradiction a, Contradiction b) {
+  ICLOTH_HD friend ContactResidual operator+(ContactResidual a, ContactResidual b) {
     return {a.error + b.error, a.load + b.load, a.work + b.work};
   }
 };
 
-/// A contact contradicts by what the linear term applied in place of the law's force at the solved
-/// motion: it pulled, was left out and has closed, slid and was to stick, or the other way round.
-struct Contradicts {
+/// The residual of one contact is what the linear term applied in place of the law's force at the
+/// solved motion: it pulled, was left out and has closed, slid and was to stick, or the other way
+/// round.
+struct ContactResidualOf {
   VertexMotion motion;
   ContactLaw law;
   View<const Contact> contacts;
   View<const ContactTerm> term;
 
-  ICLOTH_HD Contradiction operator()(Index i) const {
+  ICLOTH_HD ContactResidual operator()(Index i) const {
     const Contact& c = contacts[i];
     const ContactMotion m = motion.of(c);
     const Real normal = normal_force(c, law, m.end);
@@ -226,16 +227,16 @@ struct MoveVertices {
 };
 
 /// From the solution to the end of the step as the next iteration will solve it.
-struct Ahead {
+struct PredictedMotion {
   View<const Vec3r> dv;
-  View<Vec3r> ahead;
+  View<Vec3r> predicted;
   Real dt;
-  ICLOTH_HD void operator()(Index i) const { ahead[i] = -dt * dv[i]; }
+  ICLOTH_HD void operator()(Index i) const { predicted[i] = -dt * dv[i]; }
 };
 
-/// What the strain of second order in the motion since the point of linearisation, ½ ΔFᵀΔF, makes
-/// of tension: the linear solve did not see it.
-struct MissedTension {
+/// Tension of the strain that is of second order in the motion since the point of linearisation,
+/// ½ ΔFᵀΔF: the linear solve leaves it out.
+struct LinearizationError {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
   View<const Index> face_fabric;
@@ -248,7 +249,7 @@ struct MissedTension {
     for (int a = 0; a < 3; ++a) {
       const Index v = face[i].v[a];
       start[a] = point.start[v];
-      motion[a] = point.ahead[v] + point.dt * dv[v];
+      motion[a] = point.predicted[v] + point.dt * dv[v];
     }
     const Stiffness k =
         stiffness_at(fabric[face_fabric[i]], green_strain(face_frame(start, inverse[i].m)));
@@ -315,7 +316,7 @@ void Implicit::set_up(const World& world, bool bending) {
   hinge_source_.upload(hinge_source);
 }
 
-void Implicit::bend(StepContext& step, const Linearization& point) {
+void Implicit::bend(SubstepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const Real damping_extra = static_cast<Real>(step.parameters.material.damping);
   if (!mesh.bends) return;
@@ -339,7 +340,7 @@ void Implicit::bend(StepContext& step, const Linearization& point) {
                         mesh.fabric.view(), point, hinge_terms_.view(), damping_extra});
 }
 
-void Implicit::assemble(StepContext& step, const Linearization& point) {
+void Implicit::assemble(SubstepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Parameters& p = step.parameters;
@@ -374,34 +375,36 @@ void Implicit::assemble(StepContext& step, const Linearization& point) {
                        rhs_.view()});
 }
 
-void Implicit::integrate(StepContext& step, const Proximity& proximity) {
+void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   const Topology& mesh = step.mesh;
   const Parameters& p = step.parameters;
   State& s = step.state;
   dv_.resize(mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
-  drag_yarns(mesh, p, s);
+  update_yarn_anchors(mesh, p, s);
   rule_ = time_rule(p.implicit.integrator, static_cast<double>(step.dt), s.past.dt);
   const View<const Vec3r> velocity = move_freely(step);
   Linearization point{s.x0.view(), s.x0.view(), free_motion_.view(), velocity, rule_.h};
   for (int iteration = 0;; ++iteration) {
     assemble(step, point);
+    ++step.report.newton_iterations;
     solve_with_contacts(step, proximity, iteration > 0);
-    missed_tension_ = move(step, point);
+    linearization_error_ = move(step, point);
     if (iteration + 1 >= p.implicit.newton_iterations ||
-        !(missed_tension_ > p.implicit.newton_tolerance))
+        !(linearization_error_ > p.implicit.newton_tolerance))
       break;
     at_.copy_from(s.candidate);
-    ahead_.resize(mesh.cloth_vertices);
-    for_each("implicit.ahead", mesh.cloth_vertices, Ahead{dv_.view(), ahead_.view(), rule_.h});
+    predicted_.resize(mesh.cloth_vertices);
+    for_each("implicit.predicted", mesh.cloth_vertices,
+             PredictedMotion{dv_.view(), predicted_.view(), rule_.h});
     point.at = at_.view();
-    point.ahead = ahead_.view();
+    point.predicted = predicted_.view();
   }
   outer_work_ = air_work(step, point, dv_.view()) + hand_work(step, point, dv_.view()) +
                 yarn_work(mesh, p, s);
 }
 
-View<const Vec3r> Implicit::move_freely(const StepContext& step) {
+View<const Vec3r> Implicit::move_freely(const SubstepContext& step) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   free_motion_.resize(mesh.vertices);
@@ -418,7 +421,7 @@ View<const Vec3r> Implicit::move_freely(const StepContext& step) {
 
 /// Solves for Δv. The repulsion acts one way only, and friction sticks or slides: which contacts
 /// close and which slide is known for certain after a solve. `solved`: dv_ is a solution already.
-void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity, bool solved) {
+void Implicit::solve_with_contacts(SubstepContext& step, const Proximity& proximity, bool solved) {
   const Topology& mesh = step.mesh;
   State& s = step.state;
   const Array<Contact>& contacts = proximity.contacts();
@@ -444,32 +447,31 @@ void Implicit::solve_with_contacts(StepContext& step, const Proximity& proximity
     step.report.cg_bytes += solution.bytes;
     step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
     lost_force_ = (1 / static_cast<double>(rule_.h)) * solution.lost;
-    ++step.report.newton_iterations;
+    ++step.report.linear_solves;
     motion.solved = true;
-    const Contradiction contradiction =
-        reduce("implicit.contradicted", contacts.size(), Contradiction{0, 0, 0},
-               Contradicts{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
-    contact_work_ = contradiction.work;
-    if (!(contradiction.error > step.parameters.implicit.contact_tolerance * contradiction.load))
-      break;
+    const ContactResidual residual =
+        reduce("implicit.contact_residual", contacts.size(), ContactResidual{0, 0, 0},
+               ContactResidualOf{motion, law, contacts.view(), contact_terms_.view()}, Sum{});
+    contact_work_ = residual.work;
+    if (!(residual.error > step.parameters.implicit.contact_tolerance * residual.load)) break;
   }
 }
 
-/// Writes x1; returns the largest tension that the linearisation missed [N/m].
-double Implicit::move(StepContext& step, const Linearization& point) {
+/// Writes x1; returns the linearisation error [N/m].
+double Implicit::move(SubstepContext& step, const Linearization& point) {
   const Topology& mesh = step.mesh;
   State& s = step.state;
   for_each("implicit.move", mesh.cloth_vertices,
            MoveVertices{s.x0.view(), free_motion_.view(), dv_.view(), s.x1.view(),
                         s.candidate.view(), rule_.h});
   return static_cast<double>(
-      reduce("implicit.missed_tension", mesh.cloth_faces, Real(0),
-             MissedTension{mesh.face.view(), mesh.face_inverse.view(), mesh.face_fabric.view(),
-                           mesh.fabric.view(), point, dv_.view()},
+      reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
+             LinearizationError{mesh.face.view(), mesh.face_inverse.view(), mesh.face_fabric.view(),
+                                mesh.fabric.view(), point, dv_.view()},
              Max{}));
 }
 
-void Implicit::end(State& state) {
+void Implicit::finish_substep(State& state) {
   const Index vertices = state.mass.size();
   const Real dt = rule_.dt;
   if (rule_.integrator == Integrator::backward_euler) {

@@ -19,8 +19,8 @@ struct PlateTerm {
   Real impulse[3];    ///< −dt · torque at the end of the step [N·m·s]
 };
 
-/// First pass: until the last, k and s of a term hold the angle beyond rest and how much K is ahead
-/// of it (Linearization).
+/// First pass: until the last, k and s of a term hold the angle beyond rest and its predicted
+/// change (Linearization).
 struct HingeAngles {
   View<const HingeRest> hinge;
   View<const Fabric> fabric;
@@ -38,7 +38,7 @@ struct HingeAngles {
     t.s = 0;
     for (int a = 0; a < 4; ++a) {
       t.gradient[a] = angle.gradient[a];
-      t.s += dot(angle.gradient[a], point.lead(h.v.v[a], damping));
+      t.s += dot(angle.gradient[a], point.damped_motion(h.v.v[a], damping));
     }
     term[i] = t;
   }
@@ -54,7 +54,7 @@ struct PlateTerms {
   View<const HingeTerm> hinge_term;
   View<PlateTerm> term;
   Real damping_extra;
-  View<const YarnAnchor> yarns{};  ///< empty where no yarns rub
+  View<const YarnAnchor> yarns{};  ///< empty without yarn friction
 
   ICLOTH_HD void operator()(Index i) const {
     const PlateRest& p = plate[i];
@@ -91,7 +91,8 @@ struct PlateTerms {
     }
   }
 
-  /// Curvature away from the anchor: with the motion ahead, and where the friction is looked up.
+  /// Curvature away from the anchor: after the predicted motion, and where the friction is looked
+  /// up.
   ICLOTH_HD void curve_away(Index i, Sym2& away, Sym2& seen) const {
     Real at[3], end[3];
     for (int a = 0; a < 3; ++a) {
@@ -100,7 +101,7 @@ struct PlateTerms {
       if (h < 0) continue;
       const HingeTerm& t = hinge_term[h];
       at[a] = end[a] = t.k;
-      for (int b = 0; b < 4; ++b) end[a] += dot(t.gradient[b], point.ahead[hinge[h].v.v[b]]);
+      for (int b = 0; b < 4; ++b) end[a] += dot(t.gradient[b], point.predicted[hinge[h].v.v[b]]);
     }
     away = plate_curvature(plate[i], end) - yarns[i].curvature;
     seen = point.moved() ? plate_curvature(plate[i], at) - yarns[i].curvature : away;

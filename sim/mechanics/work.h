@@ -42,7 +42,8 @@ struct HandWork {
 };
 
 /// Work of the air on all faces [J]; 0 without air.
-inline double air_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv) {
+inline double air_work(const SubstepContext& step, const Linearization& point,
+                       View<const Vec3r> dv) {
   const Wind wind = wind_of(step.parameters);
   if (!wind.blows()) return 0;
   const State& s = step.state;
@@ -53,7 +54,8 @@ inline double air_work(const StepContext& step, const Linearization& point, View
 }
 
 /// Work of the springs of the hands, their damping included [J]; 0 without hands.
-inline double hand_work(const StepContext& step, const Linearization& point, View<const Vec3r> dv) {
+inline double hand_work(const SubstepContext& step, const Linearization& point,
+                        View<const Vec3r> dv) {
   const State& s = step.state;
   if (!s.has_springs) return 0;
   return reduce("implicit.hand_work", step.mesh.cloth_vertices, 0.0,

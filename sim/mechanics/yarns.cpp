@@ -25,13 +25,13 @@ struct FaceDeformation {
   }
 };
 
-struct EaseYarns {
+struct ResetAnchors {
   FaceDeformation deformation;
   View<YarnAnchor> anchor;
   ICLOTH_HD void operator()(Index i) const { anchor[i] = deformation(i); }
 };
 
-struct DragYarns {
+struct UpdateAnchors {
   FaceDeformation deformation;
   View<YarnAnchor> anchor, start;
   ICLOTH_HD void operator()(Index i) const {
@@ -65,20 +65,20 @@ FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, View<c
 }  // namespace
 
 void match_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
-  const Index rubbing = mesh.yarns_rub ? mesh.cloth_faces : 0;
+  const Index rubbing = mesh.has_yarn_friction ? mesh.cloth_faces : 0;
   const bool bend = rubbing > 0 && bend_as_plates(mesh, parameters);
   if (state.yarns.size() == rubbing && state.yarns_bend == bend) return;
   state.yarns.resize(rubbing);
   state.yarns_bend = bend;
-  for_each("step.ease_yarns", rubbing,
-           EaseYarns{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
+  for_each("step.reset_anchors", rubbing,
+           ResetAnchors{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
 }
 
-void drag_yarns(const Topology& mesh, const Parameters& parameters, State& state) {
+void update_yarn_anchors(const Topology& mesh, const Parameters& parameters, State& state) {
   state.yarns_start.resize(state.yarns.size());
-  for_each("implicit.drag_yarns", state.yarns.size(),
-           DragYarns{deformation_of(mesh, parameters, state.x0.view()), state.yarns.view(),
-                     state.yarns_start.view()});
+  for_each("implicit.update_anchors", state.yarns.size(),
+           UpdateAnchors{deformation_of(mesh, parameters, state.x0.view()), state.yarns.view(),
+                         state.yarns_start.view()});
 }
 
 double yarn_work(const Topology& mesh, const Parameters& parameters, const State& state) {

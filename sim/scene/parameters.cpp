@@ -184,10 +184,11 @@ constexpr ParameterInfo kTable[] = {
      20, false, "1: one linearisation as in the paper; stiff or fast turning cloth gains strain",
      "elastic forces are those of the end of the step; slower", "measured"},
     {"implicit.newton_tolerance", "Newton tolerance", "N/m", implicit<&Solve::newton_tolerance>,
-     1e-6, 1e6, true, "iterates until the linearisation misses less tension",
+     1e-6, 1e6, true, "iterates until the linearisation is wrong by less tension",
      "stops iterating sooner", "measured: bench accuracy"},
-    {"implicit.max_missed_tension", "missed tension", "N/m", implicit<&Solve::max_missed_tension>,
-     1, 1e9, true, "halves the step sooner, calmer stiff fabrics",
+    {"implicit.max_linearization_error", "largest linearisation error", "N/m",
+     implicit<&Solve::max_linearization_error>, 1, 1e9, true,
+     "halves the step sooner, calmer stiff fabrics",
      "stiff fabrics that are hit gain energy from what one solve does not see", "measured"},
 
     {"broad_phase.method", "broad phase", "", broad_phase<&Broad::method>, 0, 1, false,
@@ -247,11 +248,12 @@ constexpr ParameterInfo kTable[] = {
      "own choice: ten times the weight of a scarf"},
 };
 
-/// Short names of the paper's symbols, for the command line.
+/// Other names that are read: the paper's symbols, and names of earlier versions.
 constexpr std::pair<std::string_view, std::string_view> kAliases[] = {
     {"time_step", "step.time_step"},
     {"mu", "impact_zones.penalty"},
     {"rho", "impact_zones.rho"},
+    {"implicit.max_missed_tension", "implicit.max_linearization_error"},
 };
 
 std::string_view without_alias(std::string_view key) {
@@ -320,8 +322,9 @@ std::string_view nearest_parameter(std::string_view key) {
 std::span<const ParameterInfo> parameter_table() { return kTable; }
 
 const ParameterInfo* find_parameter(std::string_view name) {
+  const std::string_view full_name = without_alias(name);
   for (const ParameterInfo& info : kTable)
-    if (info.name == name) return &info;
+    if (info.name == full_name) return &info;
   return nullptr;
 }
 
@@ -345,7 +348,7 @@ void set_parameter(Parameters& parameters, const ParameterInfo& info, double val
 }
 
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {
-  const ParameterInfo* info = find_parameter(without_alias(key));
+  const ParameterInfo* info = find_parameter(key);
   if (!info)
     throw InputError("parameter '" + std::string(key) + "' is not known, the nearest is '" +
                      std::string(nearest_parameter(key)) + "'");

@@ -61,7 +61,7 @@ struct ImplicitParameters {
   double contact_tolerance = 1e-3;
   int newton_iterations = 5;
   double newton_tolerance = 5;
-  double max_missed_tension = 1e3;
+  double max_linearization_error = 1e3;
 };
 
 struct BroadPhaseParameters {
@@ -139,7 +139,7 @@ bool parameter_used(const Parameters& parameters, const ParameterInfo& info);
 
 std::span<const ParameterInfo> parameter_table();
 
-/// Row by its public name, or nullptr.
+/// Row by its public name or an alias of it, or nullptr.
 const ParameterInfo* find_parameter(std::string_view name);
 
 /// Value as a number (bools are 0 or 1, choices their place).

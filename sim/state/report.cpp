@@ -33,6 +33,7 @@ constexpr ReportColumn kColumns[] = {
     {"dynamic_faces", &R::dynamic_faces},
     {"static_faces", &R::static_faces},
     {"newton_iterations", &R::newton_iterations},
+    {"linear_solves", &R::linear_solves},
     {"cg_iterations", &R::cg_iterations},
     {"cg_residual", &R::cg_residual},
     {"kinetic_energy", &R::kinetic_energy},

@@ -33,9 +33,11 @@ struct StepReport {
   /// How far the worst zone was from an optimum (kernels/zones/zone_problem.h) [m], [m], relative.
   double zone_violation = 0, zone_complementarity = 0, zone_momentum_residual = 0;
   std::int64_t dynamic_faces = 0, static_faces = 0;  ///< T_d of the last round, and the other faces
-  std::int64_t newton_iterations = 0, cg_iterations = 0;
-  double cg_residual = 0;  ///< ‖b − AΔv‖₂ / ‖b‖₂, true
-  double cg_bytes = 0;     ///< that the iterations had to move at least; no column
+  std::int64_t newton_iterations = 0;                ///< linearisations of the elastic forces
+  std::int64_t linear_solves = 0;  ///< systems solved: contact passes of all linearisations
+  std::int64_t cg_iterations = 0;  ///< of all linear solves together
+  double cg_residual = 0;          ///< ‖b − AΔv‖₂ / ‖b‖₂, true
+  double cg_bytes = 0;             ///< that the iterations had to move at least; no column
   double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  ///< [J]
   double max_strain = 0;  ///< largest principal stretch − 1
   double max_speed = 0;   ///< [m/s]
@@ -45,7 +47,7 @@ struct StepReport {
   double momentum_error = 0;
   /// Kinetic, elastic and gravity energy after the step, less those before it, less the work done
   /// on the cloth in it by air, hands, contacts (repulsion and friction, as the linear terms
-  /// applied them), the friction between yarns (what it gives back included) and impact zones (all
+  /// applied them), yarn friction (what it gives back included) and impact zones (all
   /// that they changed in those energies) [J]. Negative: what
   /// damping, of the fabric and of the integrator, took away; positive: made from nothing, an
   /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,

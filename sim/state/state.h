@@ -18,9 +18,10 @@ struct Spring {
 
 /// What a two-step integrator (sim/mechanics/time_rule.h) goes on from.
 struct Past {
-  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), accept
-  Array<Vec3r> change;  ///< v0 − v₋₁ [m/s] (cloth_vertices), accept; 0 where the vertex touched
-  double dt = 0;        ///< of that step [s]; 0: none, the arrays are not used
+  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), finish_substep
+  /// v0 − v₋₁ [m/s] (cloth_vertices), 0 where the vertex touched something; finish_substep.
+  Array<Vec3r> change;
+  double dt = 0;  ///< of that step [s]; 0: none, the arrays are not used
 
   void forget() { dt = 0; }
   void copy_from(const Past& other) {
@@ -32,11 +33,11 @@ struct Past {
 };
 
 struct State {
-  Array<Vec3r> x0;         ///< start of the step [m] (vertices), begin_step
-  Array<Vec3r> x1;         ///< end of the step, candidate until accepted [m] (vertices), implicit,
-                           ///< impact_zones; obstacles: begin_step
+  Array<Vec3r> x0;         ///< start of the substep [m] (vertices), begin_substep
+  Array<Vec3r> x1;         ///< end of the substep, a candidate until it is accepted [m] (vertices);
+                           ///< implicit, impact_zones; obstacles: begin_substep
   Array<Vec3r> candidate;  ///< x*, the end without impacts [m] (cloth_vertices), implicit
-  Array<Vec3r> v;          ///< velocity [m/s] (vertices), accept; obstacles: begin_step
+  Array<Vec3r> v;          ///< velocity [m/s] (vertices), finish_substep; obstacles: begin_substep
   Array<Real> mass;        ///< with density_scale [kg] (cloth_vertices), set_parameters
   Array<Real> inverse_mass;  ///< 0 for pinned and obstacle vertices [1/kg] (vertices)
 
@@ -45,23 +46,23 @@ struct State {
   Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
 
-  /// Where the friction between yarns pulls nowhere (cloth_faces), empty where no yarns rub;
-  /// match_yarns, drag_yarns.
+  /// Deformation at which the friction between yarns exerts no force (cloth_faces), empty without
+  /// yarn friction; match_yarns, update_yarn_anchors.
   Array<YarnAnchor> yarns;
-  bool yarns_bend = false;        ///< they know curvatures, not shear alone; match_yarns
-  Array<YarnAnchor> yarns_start;  ///< deformation of x0, likewise; drag_yarns
+  bool yarns_bend = false;        ///< the anchors hold curvatures beside shear; match_yarns
+  Array<YarnAnchor> yarns_start;  ///< deformation of x0 (as yarns), update_yarn_anchors
 
   Past past;
 };
 
-/// What one (sub)step works with.
-struct StepContext {
+/// The data that the stages of one substep share.
+struct SubstepContext {
   const Topology& mesh;
   const Parameters& parameters;
   State& state;
   StepReport& report;
-  Real dt;            ///< [s]
-  double time = 1e9;  ///< of the simulation, at the start of the substep [s]
+  Real dt;      ///< length of the substep [s]
+  double time;  ///< simulated time at the start of the substep [s]
 
   Real offset() const { return static_cast<Real>(parameters.impact_zones.offset); }
   Real thickness() const { return static_cast<Real>(parameters.proximity.thickness); }

@@ -15,19 +15,19 @@ struct Topology {
   Index hinge_count = 0;
   Real median_edge = 0;  ///< rest length [m]
 
-  Array<Int3> face;          ///< vertices (faces)
-  Array<Int2> edge;          ///< vertices, smaller first (edges)
-  Array<Vec3r> rest;         ///< rest shape [m] (cloth_vertices)
-  Array<Real> mass;          ///< before density_scale [kg] (cloth_vertices)
-  Array<Real> vertex_area;   ///< [m²] (cloth_vertices)
-  Array<Real> edge_area;     ///< [m²] (cloth_edges)
-  Array<Real> face_area;     ///< rest [m²] (cloth_faces)
-  Array<Index> object;       ///< object number of each vertex (vertices)
-  Array<HingeRest> hinge;    ///< (hinge_count)
-  Array<Fabric> fabric;      ///< one a cloth
-  Array<Index> face_fabric;  ///< (cloth_faces)
-  bool bends = false;        ///< whether any fabric resists bending
-  bool yarns_rub = false;    ///< whether any fabric has friction between its yarns
+  Array<Int3> face;                ///< vertices (faces)
+  Array<Int2> edge;                ///< vertices, smaller first (edges)
+  Array<Vec3r> rest;               ///< rest shape [m] (cloth_vertices)
+  Array<Real> mass;                ///< before density_scale [kg] (cloth_vertices)
+  Array<Real> vertex_area;         ///< [m²] (cloth_vertices)
+  Array<Real> edge_area;           ///< [m²] (cloth_edges)
+  Array<Real> face_area;           ///< rest [m²] (cloth_faces)
+  Array<Index> object;             ///< object number of each vertex (vertices)
+  Array<HingeRest> hinge;          ///< (hinge_count)
+  Array<Fabric> fabric;            ///< one a cloth
+  Array<Index> face_fabric;        ///< (cloth_faces)
+  bool bends = false;              ///< whether any fabric resists bending
+  bool has_yarn_friction = false;  ///< whether any fabric has it
 
   /// With material.bending=plate alone.
   Array<PlateRest> plate;         ///< (cloth_faces)

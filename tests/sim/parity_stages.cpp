@@ -55,7 +55,7 @@ StageLists run_stages(const testing::StageStart& start) {
   stage.set_velocity(to_real(start.velocity));
   std::vector<Vec3r> end = to_real(start.x1);
   stage.set_end(end);
-  StepContext step = stage.context(static_cast<Real>(start.dt));
+  SubstepContext step = stage.context(static_cast<Real>(start.dt));
 
   BroadPhase broad_phase;
   broad_phase.prepare(step);

@@ -30,7 +30,12 @@ struct Stage {
   }
 
   std::size_t size() const { return static_cast<std::size_t>(world.vertices); }
-  StepContext context(Real dt = Real(0.01)) { return {mesh, parameters, state, report, dt}; }
+  /// Substep of length `dt`, so late in the simulation that no contact is still growing to its
+  /// thickness.
+  SubstepContext context(Real dt = Real(0.01)) {
+    constexpr double kLate = 1e9;
+    return {mesh, parameters, state, report, dt, kLate};
+  }
 
   void set_velocity(const std::vector<Vec3r>& v) { state.v.upload(v); }
   /// Candidate of the step; also x1.

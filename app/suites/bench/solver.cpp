@@ -64,7 +64,8 @@ Measured measure(Frames& frames, const Snapshot& state, Preconditioner precondit
     if (first_solve) p.implicit.newton_iterations = p.implicit.contact_passes = 1;
   });
   profile_enable(false);
-  measured.solves = report.newton_iterations, measured.iterations = report.cg_iterations;
+  measured.solves = report.linear_solves;
+  measured.iterations = report.cg_iterations;
   measured.contacts = report.proximity_pairs;
   measured.residual = report.cg_residual;
   for (const ProfileRow& row : profile_rows()) {

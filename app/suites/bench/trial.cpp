@@ -49,7 +49,7 @@ void run(HeadlessJob& job, long every, int samples, Trial& now) {
     ms += report->ms_total;
     const double share = 1 / static_cast<double>(job.steps);
     now.cg_iterations += share * static_cast<double>(report->cg_iterations);
-    now.solves += share * static_cast<double>(report->newton_iterations);
+    now.solves += share * static_cast<double>(report->linear_solves);
     now.tests += share * static_cast<double>(report->elementary_tests);
     now.pressed = std::max(now.pressed, 1 - report->min_gap / p.proximity.thickness);
     now.strain = std::max(now.strain, report->max_strain);

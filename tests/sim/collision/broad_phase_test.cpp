@@ -103,7 +103,7 @@ TEST_P(BroadPhaseMethods, CoverPredictedPathsAndTheThickness) {
     stage.state.x0.upload(stage.start);
     const auto velocity = random_vectors(stage, random, 0.1f * static_cast<Real>(trial), true);
     stage.set_velocity(velocity);
-    StepContext step = stage.context();
+    SubstepContext step = stage.context();
     broad_phase.prepare(step);
     std::vector<Vec3r> end = sum(stage.start, velocity, step.dt);
     for (Index i = 0; i < stage.world.cloth_vertices; ++i)
@@ -118,7 +118,7 @@ TEST_P(BroadPhaseMethods, CoverTheCandidateWhereverItGoes) {
   Stage stage(two_sheets_and_a_ball());
   stage.parameters.broad_phase.method = GetParam();
   BroadPhase broad_phase;
-  StepContext step = stage.context();
+  SubstepContext step = stage.context();
   broad_phase.prepare(step);
   for (const Real size : {0.001f, 0.01f, 0.05f, 0.002f}) {
     const auto end = sum(stage.start, random_vectors(stage, random, size, true));
@@ -148,7 +148,7 @@ TEST_P(BroadPhaseMethods, FindThePairsOfDirtyVertices) {
   std::mt19937 random(4);
   Stage stage(two_sheets_and_a_ball());
   stage.parameters.broad_phase.method = GetParam();
-  StepContext step = stage.context();
+  SubstepContext step = stage.context();
   BroadPhase broad_phase;
   broad_phase.prepare(step);
   std::vector<std::uint8_t> dirty(static_cast<std::size_t>(stage.world.cloth_vertices));
@@ -179,7 +179,7 @@ TEST(BroadPhase, KeepsTheListsWhileTheMotionStaysInTheBoxes) {
   std::mt19937 random(3);
   Stage stage(two_sheets_and_a_ball());
   stage.set_velocity(random_vectors(stage, random, 1.0f, false));
-  StepContext step = stage.context();
+  SubstepContext step = stage.context();
   BroadPhase broad_phase;
   profile_reset();
   profile_enable(true);
@@ -205,7 +205,7 @@ TEST(BroadPhase, ClothAloneAndASingleFaceHaveNoMissingTree) {
   Scene scene;
   scene.cloths.push_back(testing::make_sheet(testing::lying(0.1, 2), {}));
   Stage stage(std::move(scene));
-  StepContext step = stage.context();
+  SubstepContext step = stage.context();
   BroadPhase broad_phase;
   broad_phase.prepare(step);
   std::size_t needed = 0;

@@ -69,7 +69,7 @@ struct Tangle {
     stage.set_end(end);
   }
   void find(const std::vector<std::uint8_t>* dirty = nullptr) {
-    StepContext step = stage.context();
+    SubstepContext step = stage.context();
     broad_phase.cover_candidate(step);
     Array<std::uint8_t> flags;
     if (dirty) flags.upload(*dirty);

@@ -41,7 +41,7 @@ using Objects = std::pair<Index, Index>;  ///< the smaller first; sheets 0 … 3
 /// Coefficients of the contacts between two objects, of both kinds of pairs.
 std::map<Objects, std::set<Real>> coefficients(const Scene& scene) {
   Stage stage(scene);
-  StepContext step = stage.context();
+  SubstepContext step = stage.context();
   BroadPhase broad_phase;
   broad_phase.prepare(step);
   Proximity proximity;

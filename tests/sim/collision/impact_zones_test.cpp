@@ -50,16 +50,16 @@ struct Crossing {
       end[at(i)].y += stage.world.object[at(i)] == 6 ? -2 * speed : (upper ? -speed : speed);
     }
     stage.set_end(end);
-    zones.begin_step();
+    zones.begin_substep();
   }
 
   void find(bool incremental = false) {
-    StepContext step = stage.context();
+    SubstepContext step = stage.context();
     broad_phase.cover_candidate(step);
     ccd.find(step, broad_phase, zones.dirty(), incremental);
   }
   void solve() {
-    StepContext step = stage.context();
+    SubstepContext step = stage.context();
     zones.solve(step, ccd.impacts());
   }
 };
@@ -201,8 +201,8 @@ std::vector<Vec3r> solve_large_zone(ZoneSolver solver, int threads, Index& large
   BroadPhase broad_phase;
   Ccd ccd;
   ImpactZones zones;
-  zones.begin_step();
-  StepContext step = stage.context();
+  zones.begin_substep();
+  SubstepContext step = stage.context();
   broad_phase.cover_candidate(step);
   ccd.find(step, broad_phase, zones.dirty(), false);
   zones.solve(step, ccd.impacts());
@@ -248,7 +248,7 @@ TEST_P(ImpactZoneSolvers, LeaveNothingToAFullDetection) {
     int round = 0;
     for (; round < 10 && !c.ccd.impacts().empty(); ++round) {
       c.solve();
-      StepContext step = c.stage.context();
+      SubstepContext step = c.stage.context();
       c.broad_phase.cover_dirty(step, c.zones.dirty());
       c.ccd.find(step, c.broad_phase, c.zones.dirty(), true);
       BroadPhase fresh;

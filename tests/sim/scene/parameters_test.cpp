@@ -83,6 +83,14 @@ TEST(Parameters, SetByNameAndAlias) {
   EXPECT_EQ(parameters.implicit.cg_max_iterations, 77);
 }
 
+TEST(Parameters, ReadsTheEarlierNameOfARenamedParameter) {
+  Parameters parameters;
+  set_parameter(parameters, "implicit.max_missed_tension", "123");
+  EXPECT_EQ(parameters.implicit.max_linearization_error, 123);
+  EXPECT_EQ(find_parameter("implicit.max_missed_tension"),
+            find_parameter("implicit.max_linearization_error"));
+}
+
 TEST(Parameters, RefusesBadValuesWithOneLine) {
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
            {"time_step", "0"},

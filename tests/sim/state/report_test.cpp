@@ -26,7 +26,7 @@ TEST(Report, ColumnsStandInTheOrderThatFilesPromise) {
             "ms_total ms_proximity ms_implicit ms_broad_phase ms_ccd ms_impact_zones ms_other "
             "proximity_pairs candidate_pairs elementary_tests impacts_first impacts_left "
             "rounds zones largest_zone zone_iterations dynamic_faces static_faces "
-            "newton_iterations cg_iterations cg_residual "
+            "newton_iterations linear_solves cg_iterations cg_residual "
             "kinetic_energy elastic_energy gravity_energy max_strain max_speed min_gap "
             "state_hash "
             "zone_violation zone_complementarity zone_momentum_residual box_tests "
