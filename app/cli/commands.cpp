@@ -1,11 +1,9 @@
 #include "app/cli/commands.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <new>
 
 #include "app/cli/commands/bench.h"
 #include "app/cli/commands/ccd.h"
@@ -16,8 +14,9 @@
 #include "app/cli/commands/replay.h"
 #include "app/cli/commands/run.h"
 #include "app/cli/commands/view.h"
+#include "app/common/command_options.h"
 #include "app/common/machine.h"
-#include "app/common/options.h"
+#include "app/common/program.h"
 #include "app/window/bindings.h"
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
@@ -43,7 +42,6 @@ struct Commands {
   ViewOptions view;
   RunOptions run;
   RenderOptions render;
-  BenchOptions bench;
   ReplayOptions replay;
   CheckOptions check;
   DetectOptions detect;
@@ -55,7 +53,8 @@ struct Commands {
   void add_view();
   void add_run();
   void add_render();
-  void add_bench_and_replay();
+  void add_bench();
+  void add_replay();
   void add_tests();
 };
 
@@ -148,31 +147,20 @@ void Commands::add_render() {
   verb->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
 }
 
-void Commands::add_bench_and_replay() {
-  CLI::App* verb =
-      add_verb("bench", "benchmark suites and reports", [this] { return run_bench(bench); });
-  verb->add_option("SUITE", bench.suite, "quick, paper, accuracy, stability, validation or solver")
-      ->capture_default_str();
-  verb->add_option("--out", bench.out, "folder of report.html, results.json and tables");
-  add_device_option(*verb, bench.device);
-  verb->add_option("--threads", bench.threads, "threads of the CPU solver")
-      ->check(CLI::Range(1, 4096));
-  verb->add_flag("--quiet", bench.quiet, "no progress line");
-  verb->add_option("--case", bench.only,
-                   "accuracy, stability, validation, solver: only cases whose name holds this");
-  verb->add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");
-  verb->add_option("--soak", bench.soak, "stability: simulated seconds of random dragging")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str();
-
-  verb = add_verb("replay", "run recorded input again and compare the final state",
-                  [this] { return run_replay(replay); });
+void Commands::add_replay() {
+  CLI::App* verb = add_verb("replay", "run recorded input again and compare the final state",
+                            [this] { return run_replay(replay); });
   verb->add_option("RECORDING", replay.recording, "file of --record or of a session")->required();
   verb->add_option("--threads", replay.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
   add_device_option(*verb, replay.device);
   verb->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
   verb->add_flag("--quiet", replay.quiet, "print errors only");
+}
+
+/// For the list of --help alone: run_words hands the verb to the program of the suites.
+void Commands::add_bench() {
+  app.add_subcommand("bench", "benchmark suites and reports (icloth bench --help)");
 }
 
 void Commands::add_tests() {
@@ -202,7 +190,8 @@ Commands::Commands() {
   add_view();
   add_run();
   add_render();
-  add_bench_and_replay();
+  add_bench();
+  add_replay();
   add_tests();
 }
 
@@ -224,11 +213,10 @@ void complete_verb(std::vector<std::string>& words) {
   words.insert(words.begin(), "view");
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find_first_of("\r\n"));
-}
-
 int run_words(std::vector<std::string> words) {
+  if (!words.empty() && words.front() == "bench")
+    return run_bench_program({words.begin() + 1, words.end()});
+
   Commands commands;
   complete_verb(words);
   std::ranges::reverse(words);  // as CLI11 wants them
@@ -244,22 +232,7 @@ int run_words(std::vector<std::string> words) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  const auto fail = [](int code, const char* what) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "icloth: %s\n", first_line(what).c_str());
-    return code;
-  };
-  try {
-    return run_words({argv + 1, argv + argc});
-  } catch (const InputError& error) {
-    return fail(2, error.what());
-  } catch (const DeviceError& error) {
-    return fail(3, error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(2, "there is not enough memory for this input");
-  } catch (const std::exception& error) {
-    return fail(1, (std::string("internal error: ") + error.what()).c_str());
-  }
+  return run_program([&] { return run_words({argv + 1, argv + argc}); });
 }
 
 }  // namespace icloth

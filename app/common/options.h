@@ -6,10 +6,6 @@
 
 #include "sim/simulator.h"
 
-namespace CLI {
-class App;
-}
-
 namespace icloth {
 
 struct SimulationOptions {
@@ -25,12 +21,6 @@ struct SimulationOptions {
   bool dump_config = false;            ///< print all parameters and stop
   bool quiet = false;
 };
-
-/// --device of a verb; its form is checked while the command line is read.
-void add_device_option(CLI::App& verb, std::string& device);
-
-/// Adds the options to a verb; values are checked while the command line is read.
-void add_simulation_options(CLI::App& verb, SimulationOptions& options, bool scene_required);
 
 /// What the options change of the scene, for load_scene: the preset first, then each --set.
 std::vector<std::string> scene_overrides(const SimulationOptions& options);

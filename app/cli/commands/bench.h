@@ -1,12 +1,14 @@
-// icloth bench: benchmark suites.
+// icloth bench: the suites are a program of their own, icloth-bench, beside this one. They take as
+// long to compile as the rest, and most people never run them.
 #pragma once
 
-#include "app/suites/bench/bench_options.h"
+#include <string>
+#include <vector>
 
 namespace icloth {
 
-/// Runs a suite on every build that this machine has and prints a table. Returns 0, or 1 when a run
-/// was refused or left penetrations. Throws InputError.
-int run_bench(const BenchOptions& options);
+/// Replaces this process by icloth-bench with these words. Throws InputError where it is not
+/// built.
+int run_bench_program(const std::vector<std::string>& words);
 
 }  // namespace icloth

@@ -1,0 +1,64 @@
+// The options of SimulationOptions on the command line. CLI11 takes long to compile: the one source
+// file of a program that reads the command line includes this, no other.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <string>
+
+#include "app/common/options.h"
+
+namespace icloth {
+
+inline constexpr double kLongestTime = 1e5;  ///< of --time [s]
+
+inline std::string check_device(const std::string& text) {
+  const bool numbered = text.starts_with("cuda:") && text.size() > 5 && text.size() < 9 &&
+                        text.find_first_not_of("0123456789", 5) == std::string::npos;
+  if (text == "cpu" || text == "cuda" || numbered) return "";
+  return "'" + text + "', expected cpu, cuda or cuda:N";
+}
+
+/// CLI::Range lets NaN through.
+inline std::string check_time(const std::string& text) {
+  char* end = nullptr;
+  const double time = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && time >= 0 && time <= kLongestTime) return "";
+  return "'" + text + "', expected seconds from 0 to 100000";
+}
+
+/// Adds --device to a verb; its form is checked while the command line is read.
+inline void add_device_option(CLI::App& verb, std::string& device) {
+  verb.add_option("--device", device, "cpu, cuda or cuda:N (default: cuda where usable)")
+      ->check(check_device);
+}
+
+/// Adds the options to a verb; values are checked while the command line is read.
+inline void add_simulation_options(CLI::App& verb, SimulationOptions& options,
+                                   bool scene_required) {
+  auto* scene =
+      verb.add_option("SCENE", options.scene,
+                      "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
+                      "file");
+  if (scene_required) scene->required();
+  add_device_option(verb, options.device);
+  verb.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
+      ->check(CLI::IsMember({"f32", "f64"}));
+  verb.add_option("--threads", options.threads, "threads of the CPU solver (default: all)")
+      ->check(CLI::Range(1, 4096));
+  auto* steps = verb.add_option("--steps", options.steps, "number of steps")
+                    ->check(CLI::Range(0L, 100'000'000L));
+  verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
+      ->check(check_time)
+      ->excludes(steps);
+  verb.add_flag("--repair-start", options.repair_start,
+                "separate faces that intersect a little at the start");
+  verb.add_option("--preset", options.preset,
+                  "fast, normal or accurate: settings measured by bench accuracy");
+  verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
+      ->allow_extra_args(false);
+  verb.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");
+  verb.add_flag("--quiet", options.quiet, "print errors only");
+}
+
+}  // namespace icloth
