@@ -12,12 +12,15 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kSteepest = 0.495 * kPi;           // straight down would leave `right` undefined
 constexpr double kShortest = 1e-3, kLongest = 1e4;  // distance to the target [m]
 
+/// The tangent of half the vertical field of view.
 double tangent(double fov) { return std::tan(fov * kPi / 360); }
 
 }  // namespace
 
 Camera::Camera(const CameraPose& pose)
     : target_(pose.target), fov_(std::clamp(pose.fov, 1., 150.)) {
+  // The eye relative to the target tells yaw, pitch and distance; an eye on the target keeps the
+  // defaults.
   const Vec3d offset = pose.eye - pose.target;
   const double length = norm(offset);
   distance_ = std::clamp(length, kShortest, kLongest);
@@ -50,6 +53,9 @@ Matrix4 Camera::view() const { return look(eye(), right(), up(), -forward()); }
 
 Matrix4 Camera::projection(double aspect) const {
   const double f = 1 / tangent(fov_);
+
+  // The planes are far enough from the target for any scene, and close enough together for the
+  // precision of depth.
   const double near_plane = 0.02 * distance_, far_plane = 100 * distance_;
   const double range = near_plane - far_plane;
   return {f / aspect,
@@ -98,7 +104,8 @@ void Camera::set_pivot(Vec3d point) {
 }
 
 void Camera::frame_box(Vec3d low, Vec3d high, double aspect) {
-  // The farthest back that any corner needs the eye to be, for the picture's height and width.
+  // The distance is the farthest back that any corner of the box needs the eye to be, for the
+  // picture's height and width.
   const double vertical = tangent(fov_) * 0.92, horizontal = vertical * aspect;
   target_ = 0.5 * (low + high);
   double needed = kShortest;

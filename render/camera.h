@@ -6,6 +6,7 @@
 
 namespace icloth {
 
+/// A half-line from a point in a direction.
 struct Ray {
   Vec3d origin;     ///< [m]
   Vec3d direction;  ///< unit length
@@ -17,10 +18,11 @@ struct Projected {
   double depth = 0;  ///< along the viewing direction [m]; ≤ 0 behind the eye
 };
 
+/// The camera of the window and of pictures.
 class Camera {
  public:
   Camera() : Camera(CameraPose{}) {}
-  /// Keeps eye, target and field of view; the horizon stays level whatever `up` is.
+  /// Takes eye, target and field of view; the horizon stays level whatever `up` is.
   explicit Camera(const CameraPose& pose);
 
   /// The pose as a scene file stores it.
@@ -38,22 +40,22 @@ class Camera {
   /// OpenGL clip space; near and far planes follow the distance to the target.
   Matrix4 projection(double aspect) const;
 
-  /// Turns around the target: a drag of the pointer in pixels on a picture of `height` pixels
-  /// (a drag over the whole height is half a turn).
+  /// Turns around the target, for a drag of the pointer in pixels on a picture of `height` pixels.
+  /// A drag over the whole height is half a turn.
   void orbit(double dx, double dy, int height);
   /// Moves eye and target so that the target's plane follows the pointer.
   void pan(double dx, double dy, int height);
-  /// Distance to the target times `factor`.
+  /// Multiplies the distance to the target by `factor`.
   void dolly(double factor);
-  /// The same towards a point that stays where it is on the picture.
+  /// Does the same towards a point that stays where it is on the picture.
   void dolly_to(double factor, Vec3d point);
-  /// Turns around another point from now on; the eye stays where it is and the view direction
+  /// Turns around another point from now on. The eye stays where it is, and the view direction
   /// turns towards the point.
   void set_pivot(Vec3d point);
   /// Shows a whole box from the present direction.
   void frame_box(Vec3d low, Vec3d high, double aspect);
 
-  /// Through a point of the picture; (0.5, 0.5) is the centre of the top left pixel.
+  /// The ray through a point of the picture; (0.5, 0.5) is the centre of the top left pixel.
   Ray ray(double x, double y, int width, int height) const;
   Projected project(Vec3d point, int width, int height) const;
   /// Size of one pixel at a depth along the viewing direction [m].

@@ -54,6 +54,7 @@ void check_gl(const char* where) {
 
 std::string gl_info() {
   try {
+    // A context on the device of the solver is asked for, where there is one.
     const bool cuda = build_available(Build::cuda32);
     const int device = cuda_device();
     const std::unique_ptr<GlContext> context = make_egl_context(cuda ? device : kNone);
@@ -62,6 +63,8 @@ std::string gl_info() {
         interop_works(device, reason)
             ? "CUDA-OpenGL interop (probe passed on CUDA device " + std::to_string(device) + ")"
             : "host copy (" + reason + ")";
+
+    // The lines are those that `icloth info` prints.
     return "renderer      " + gl_renderer() + "\n              " + context->origin() +
            "\nvertices      " + vertices + "\n";
   } catch (const DeviceError& error) {

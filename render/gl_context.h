@@ -1,4 +1,4 @@
-// Where OpenGL comes from: a window (GLFW, in app/) or nothing but a device (EGL).
+// The source of OpenGL: a window (GLFW, in app/), or a device alone (EGL).
 #pragma once
 
 #include <memory>
@@ -6,7 +6,7 @@
 
 namespace icloth {
 
-/// What glfwGetProcAddress and eglGetProcAddress return.
+/// The type of function that glfwGetProcAddress and eglGetProcAddress return.
 using GlFunction = void (*)();
 using GlLoader = GlFunction (*)(const char* name);
 
@@ -15,7 +15,7 @@ class GlContext {
  public:
   virtual ~GlContext() = default;
 
-  /// Makes it the calling thread's current context.
+  /// Makes this the calling thread's current context.
   virtual void make_current() = 0;
   /// One line that says where the context comes from, e.g. "EGL device 0 (surfaceless)".
   virtual std::string origin() const = 0;
@@ -25,10 +25,10 @@ class GlContext {
 /// Throws DeviceError when the context is older than 4.5 core.
 void load_gl(GlLoader loader);
 
-/// "RENDERER, OpenGL VERSION" of the current context.
+/// The text "RENDERER, OpenGL VERSION" of the current context.
 std::string gl_renderer();
 
-/// What the current context draws on, as the driver calls it: "NVIDIA H200/PCIe/SSE2".
+/// The device that the current context draws on, as the driver calls it: "NVIDIA H200/PCIe/SSE2".
 std::string gl_device_name();
 
 /// True when the current context draws on the processor (llvmpipe and the like).
@@ -38,7 +38,8 @@ bool gl_is_software();
 void check_gl(const char* where);
 
 /// Several lines for `icloth info`: renderer, version, origin, and how vertices reach the GPU and
-/// why. Makes a headless context of its own; a missing one is said, not thrown.
+/// why. Makes a headless context of its own; when there is none, the lines say so and nothing is
+/// thrown.
 std::string gl_info();
 
 }  // namespace icloth

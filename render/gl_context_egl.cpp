@@ -14,6 +14,7 @@ namespace icloth {
 
 namespace {
 
+/// A context of EGL without a surface.
 class EglContext final : public GlContext {
  public:
   EglContext(EGLDisplay display, EGLContext context, std::string origin)
@@ -39,7 +40,7 @@ class EglContext final : public GlContext {
   std::string origin_;
 };
 
-/// Remembers why each way failed, for the message at the end.
+/// The reasons why each attempt failed, for the message at the end.
 using Tried = std::string;
 
 template <class Function>
@@ -49,6 +50,7 @@ Function function(const char* name) {
 
 std::string text(const char* value) { return value ? value : "unnamed"; }
 
+/// A context of OpenGL 4.5 core, with any configuration that can do OpenGL.
 EGLContext create_context(EGLDisplay display) {
   const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
   EGLConfig config = nullptr;
@@ -65,18 +67,23 @@ EGLContext create_context(EGLDisplay display) {
   return eglCreateContext(display, config, EGL_NO_CONTEXT, version);
 }
 
-/// A current context with its functions loaded, or nullptr and a reason in `tried`.
+/// Makes a current context with its functions loaded, or returns nullptr and adds a reason to
+/// `tried`.
 std::unique_ptr<GlContext> try_display(EGLDisplay display, const std::string& name, Tried& tried) {
   const auto fail = [&](const char* why) {
     tried += (tried.empty() ? "" : "; ") + name + ": " + why;
     return nullptr;
   };
+
+  // The display, its API and the context may each be missing.
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY) return fail("no display");
   if (!eglInitialize(display, &major, &minor)) return fail("cannot be initialised");
   if (!eglBindAPI(EGL_OPENGL_API)) return fail("OpenGL ES only");
   const EGLContext context = create_context(display);
   if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context");
+
+  // The functions must be loaded from the driver of this very context.
   const std::string origin = name + ", " + text(eglQueryString(display, EGL_VENDOR));
   auto made = std::make_unique<EglContext>(display, context, origin);
   try {
@@ -88,6 +95,7 @@ std::unique_ptr<GlContext> try_display(EGLDisplay display, const std::string& na
   return made;
 }
 
+/// The devices that EGL lists; none where the extension is missing.
 std::vector<EGLDeviceEXT> devices() {
   const auto query = function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   EGLint count = 0;
@@ -98,7 +106,7 @@ std::vector<EGLDeviceEXT> devices() {
   return list;
 }
 
-/// The number that EGL says CUDA gives the device; kNone when it says none.
+/// The number that EGL says CUDA gives the device, or kNone when it gives none.
 int cuda_number(EGLDeviceEXT device) {
   const auto describe = function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
   const auto query = function<PFNEGLQUERYDEVICEATTRIBEXTPROC>("eglQueryDeviceAttribEXT");
@@ -116,6 +124,8 @@ int cuda_number(EGLDeviceEXT device) {
 std::vector<std::size_t> egl_order(std::span<const int> cuda, int wanted) {
   std::vector<std::size_t> order(cuda.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
+
+  // The wanted number ranks first, then the others that CUDA has a number for.
   const auto rank = [&](std::size_t k) { return cuda[k] < 0 ? 2 : cuda[k] == wanted ? 0 : 1; };
   if (wanted >= 0) {
     std::ranges::stable_sort(order,
@@ -127,11 +137,15 @@ std::vector<std::size_t> egl_order(std::span<const int> cuda, int wanted) {
 std::unique_ptr<GlContext> make_egl_context(int cuda_device) {
   Tried tried;
   const auto display = function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+
+  // Every device of EGL is tried, those of CUDA first where vertices are to be shared with it.
   if (!display) throw DeviceError("EGL: no platform displays, expected EGL 1.5 or newer");
   const std::vector<EGLDeviceEXT> list = devices();
   std::vector<int> cuda;
   for (EGLDeviceEXT device : list) cuda.push_back(cuda_device < 0 ? kNone : cuda_number(device));
-  std::unique_ptr<GlContext> spare;  // works, but draws elsewhere
+
+  // A context that works but draws elsewhere is kept in case that no other is found.
+  std::unique_ptr<GlContext> spare;
   for (const std::size_t k : egl_order(cuda, cuda_device)) {
     const EGLDisplay platform = display(EGL_PLATFORM_DEVICE_EXT, list[k], nullptr);
     auto made = try_display(platform, "EGL device " + std::to_string(k), tried);
@@ -140,11 +154,16 @@ std::unique_ptr<GlContext> make_egl_context(int cuda_device) {
     if (cuda_device < 0 || gl_runs_on_cuda(cuda_device, elsewhere)) return made;
     if (!spare) spare = std::move(made);
   }
+
+  // The functions loaded last may be another driver's, so those of the spare context are loaded
+  // again.
   if (spare) {
     spare->make_current();
-    load_gl(&eglGetProcAddress);  // those of the last try may be another driver's
+    load_gl(&eglGetProcAddress);
     return spare;
   }
+
+  // Without any device Mesa's software driver remains.
   EGLDisplay surfaceless = display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (auto made = try_display(surfaceless, "EGL surfaceless", tried)) return made;
   throw DeviceError("no OpenGL 4.5 core without a display (" + tried +

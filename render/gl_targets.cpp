@@ -24,6 +24,7 @@ GLenum format(Target::Kind kind) {
   return GL_RGBA8;
 }
 
+/// Pixels are read one by one; a shadow map compares and blends four of them.
 void set_filters(GLuint texture, bool shadow) {
   const GLint filter = shadow ? GL_LINEAR : GL_NEAREST;
   glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, filter);
@@ -50,10 +51,14 @@ void Target::release() {
 void Target::resize(int width, int height) {
   if (width == width_ && height == height_) return;
   release();
+
+  // The texture has the size and the format of its kind.
   const bool shadow = kind_ == Kind::shadow;
   glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
   glTextureStorage2D(texture_, 1, format(kind_), width, height);
   set_filters(texture_, shadow);
+
+  // The framebuffer draws into the texture, and into a depth buffer where the kind needs one.
   glCreateFramebuffers(1, &framebuffer_);
   glNamedFramebufferTexture(framebuffer_, shadow ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
                             texture_, 0);
@@ -63,6 +68,8 @@ void Target::resize(int width, int height) {
     glNamedRenderbufferStorage(depth_, GL_DEPTH_COMPONENT24, width, height);
     glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   }
+
+  // A size that the driver refuses shows only now.
   if (glCheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw DeviceError("OpenGL: no framebuffer of " + std::to_string(width) + " x " +
                       std::to_string(height) + " pixels");

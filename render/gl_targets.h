@@ -1,9 +1,10 @@
-// Things to draw into.
+// Textures to draw into.
 #pragma once
 
 namespace icloth {
 
-/// A texture of one mip level with a framebuffer around it. Owns both; needs a current context.
+/// A texture of one mip level with a framebuffer that draws into it. Owns both; needs a current
+/// context.
 class Target {
  public:
   enum class Kind {
@@ -18,10 +19,10 @@ class Target {
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
 
-  /// Makes it this large; what was in it is lost when the size changes. Throws DeviceError when
-  /// the driver refuses.
+  /// Makes it this large; its content is lost when the size changes. Throws DeviceError when the
+  /// driver refuses.
   void resize(int width, int height);
-  /// Draw into it from now on, with the viewport over all of it.
+  /// Directs drawing into it, with the viewport over all of it.
   void bind() const;
   void bind_texture(unsigned unit) const;
   unsigned framebuffer() const { return framebuffer_; }

@@ -28,18 +28,21 @@ std::size_t pixel_count(const Image& image) {
   return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
+/// The largest difference of a colour channel of two pixels.
 int largest_step(const std::uint8_t* a, const std::uint8_t* b) {
   int largest = 0;
   for (int c = 0; c < kColours; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
   return largest;
 }
 
-/// Size of the largest set of marked pixels that touch by side or corner. Clears the marks.
+/// The size of the largest set of marked pixels that touch by side or corner. Clears the marks.
 int largest_blob(std::vector<std::uint8_t>& marked, int width, int height) {
   const auto index = [width](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   };
+
+  // Every marked pixel starts a flood fill, which clears the marks of its set.
   int largest = 0;
   std::vector<std::pair<int, int>> open;
   for (int y = 0; y < height; ++y) {
@@ -48,6 +51,8 @@ int largest_blob(std::vector<std::uint8_t>& marked, int width, int height) {
       int size = 0;
       marked[index(x, y)] = 0;
       open.assign(1, {x, y});
+
+      // The eight neighbours of a pixel join, as far as they are in the picture.
       while (!open.empty()) {
         const auto [px, py] = open.back();
         open.pop_back();
@@ -60,6 +65,7 @@ int largest_blob(std::vector<std::uint8_t>& marked, int width, int height) {
           }
         }
       }
+
       largest = std::max(largest, size);
     }
   }
@@ -88,6 +94,7 @@ void write_png(const std::string& path, const Image& image) {
 }
 
 Image read_png(const std::string& path) {
+  // The size is checked before memory is taken, as files are untrusted.
   constexpr std::int64_t kMostPixels = 64'000'000;
   int width = 0, height = 0, channels = 0;
   if (!stbi_info(path.c_str(), &width, &height, &channels))
@@ -96,6 +103,7 @@ Image read_png(const std::string& path) {
     throw InputError(path + ": " + std::to_string(width) + " x " + std::to_string(height) +
                      " pixels, expected at most 64 million");
   }
+
   std::uint8_t* data = stbi_load(path.c_str(), &width, &height, &channels, 4);
   if (!data) throw InputError(path + ": damaged PNG file (" + stbi_failure_reason() + ")");
   Image image(width, height);
@@ -120,10 +128,14 @@ std::string ImageDifference::text() const {
 
 ImageDifference compare(const Image& actual, const Image& expected,
                         const ImageTolerance& tolerance) {
+  // Pictures of one colour are told apart, as nothing may have been drawn.
   ImageDifference result;
   result.blank = one_colour(actual);
   result.same_size = actual.width == expected.width && actual.height == expected.height;
   if (!result.same_size || actual.pixels.empty()) return result;
+
+  // Pixels beyond the tolerance are counted; those that the eye sees are marked, to find the
+  // largest set.
   std::size_t beyond = 0;
   std::vector<std::uint8_t> seen(pixel_count(actual), 0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -132,6 +144,7 @@ ImageDifference compare(const Image& actual, const Image& expected,
     seen[i] = step > tolerance.blob_channel;
     result.largest_channel = std::max(result.largest_channel, step);
   }
+
   result.fraction = static_cast<double>(beyond) / static_cast<double>(seen.size());
   result.largest_blob = largest_blob(seen, actual.width, actual.height);
   return result;

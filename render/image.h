@@ -25,12 +25,13 @@ struct Image {
   }
 };
 
-/// Throws InputError when the file cannot be written.
+/// Writes a PNG file. Throws InputError when it cannot be written.
 void write_png(const std::string& path, const Image& image);
-/// Throws InputError when the file is missing, is no PNG, or has more than 64 million pixels.
+/// Reads a PNG file. Throws InputError when it is missing, is no PNG, or has more than 64 million
+/// pixels.
 Image read_png(const std::string& path);
 
-/// How two pictures may differ and still count as the same. The defaults are for one software
+/// The differences with which two pictures still count as the same. The defaults suit one software
 /// rasteriser on processors of different makers.
 struct ImageTolerance {
   int channel = 4;          ///< difference of a channel that counts [1/255]
@@ -47,14 +48,15 @@ struct ImageDifference {
   int largest_channel = 0;  ///< largest difference of a channel [1/255]
 
   bool accepted(const ImageTolerance& tolerance) const;
-  /// One line with the figures.
+  /// One line with the numbers.
   std::string text() const;
 };
 
+/// Compares two pictures.
 ImageDifference compare(const Image& actual, const Image& expected,
                         const ImageTolerance& tolerance = {});
 
-/// |actual − expected| × gain per colour channel, opaque. Sizes must be equal.
+/// The picture |actual − expected| × gain per colour channel, opaque. Sizes must be equal.
 Image difference_image(const Image& actual, const Image& expected, int gain = 16);
 
 }  // namespace icloth

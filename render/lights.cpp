@@ -22,6 +22,7 @@ void axes(Vec3d direction, Vec3d& right, Vec3d& up) {
   up = cross(direction, right);
 }
 
+/// A box that grows point by point.
 struct Box {
   static constexpr float kInfinite = std::numeric_limits<float>::infinity();
   Vec3f low{kInfinite, kInfinite, kInfinite}, high{-kInfinite, -kInfinite, -kInfinite};
@@ -41,6 +42,8 @@ struct Box {
 
 Bounds bounds_of(std::span<const Vec3f> points, std::size_t cloth) {
   constexpr double kNear = 4;  // in radii of the cloth
+
+  // The cloth decides which of the other points are near enough to matter.
   Box box;
   for (const Vec3f p : points.first(cloth)) box.add(p);
   const Bounds near_cloth = box.bounds();
@@ -57,11 +60,14 @@ LightSample light_sample(int i, int n) {
   sample.key = normalized(kKey);
   sample.dome = {0, 1, 0};
   if (n <= 1) return sample;
+
+  // The offsets in the pixel are those of a square grid.
   const int side = std::max(1, static_cast<int>(std::lround(std::sqrt(n))));
   sample.pixel_x = (i % side + 0.5) / side - 0.5;
   sample.pixel_y = (i / side % side + 0.5) / side - 0.5;
 
-  // Disc: an additive recurrence (Roberts 2018, the plastic number) mapped by equal areas.
+  // The disc is sampled by an additive recurrence (Roberts 2018, the plastic number), mapped by
+  // equal areas.
   const double u = fraction(0.5 + 0.7548776662466927 * i),
                v = fraction(0.5 + 0.5698402909980532 * i);
   const double r = kKeyRadius * std::sqrt(u);
@@ -70,7 +76,7 @@ LightSample light_sample(int i, int n) {
   sample.key =
       normalized(sample.key + r * std::cos(2 * kPi * v) * right + r * std::sin(2 * kPi * v) * up);
 
-  // Dome: a Fibonacci lattice; the heights are spread evenly, so is the area.
+  // The dome is sampled by a Fibonacci lattice; the heights are spread evenly, and so is the area.
   const double height = (i + 0.5) / n;
   const double around = 2 * kPi * fraction(i * std::numbers::phi);
   const double out = std::sqrt(1 - height * height);

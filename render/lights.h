@@ -1,4 +1,4 @@
-// Where the light comes from. No OpenGL here.
+// The directions that light comes from, without any OpenGL.
 #pragma once
 
 #include <span>
@@ -14,12 +14,12 @@ struct Bounds {
   double lowest = 0;  ///< smallest height of a point in it [m]
 };
 
-/// Around the first `cloth` points and those of the others that are near them (a floor may reach
-/// far beyond what is worth a shadow). Never smaller than a millimetre.
+/// The sphere around the first `cloth` points and those of the others that are near them (a floor
+/// may reach far beyond what is worth a shadow). It is never smaller than a millimetre.
 Bounds bounds_of(std::span<const Vec3f> points, std::size_t cloth);
 
-/// One sample of the studio: the key light is a disc, the sky a dome. Sample i of n is the same
-/// in every picture; over all n they cover disc, dome and pixel evenly.
+/// One sample of the studio, whose key light is a disc and whose sky is a dome. Sample i of n is
+/// the same in every picture; over all n they cover disc, dome and pixel evenly.
 struct LightSample {
   Vec3d key;                ///< unit vector towards the key light
   Vec3d dome;               ///< unit vector towards a part of the sky
@@ -27,7 +27,8 @@ struct LightSample {
 };
 LightSample light_sample(int i, int n);
 
-/// World to the clip space of a light far away in `direction` that sees the bounds.
+/// The matrix from the world to the clip space of a light far away in `direction` that sees the
+/// bounds.
 Matrix4 light_matrix(const Bounds& bounds, Vec3d direction);
 
 }  // namespace icloth

@@ -1,4 +1,4 @@
-// Where the threads of the fabric run.
+// The material coordinates of the fabric, which tell the shaders how its threads run.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace icloth {
 
-/// Material coordinates of the corners of the cloth faces [m] (cloth_faces), from the faces' own
-/// frames (World::face_inverse). Neighbours agree wherever a cloth can be laid out flat; a loop
+/// The material coordinates of the corners of the cloth faces [m] (cloth_faces), from the faces'
+/// own frames (World::face_inverse). Neighbours agree wherever a cloth can be laid out flat; a loop
 /// that cannot (a tube sewn together) breaks along one line of faces.
 std::vector<std::array<Vec2d, 3>> material_coordinates(const World& world);
 

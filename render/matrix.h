@@ -7,7 +7,7 @@
 
 namespace icloth {
 
-/// Column-major, as OpenGL takes it.
+/// A matrix in column-major order, as OpenGL takes it.
 using Matrix4 = std::array<double, 16>;
 
 inline Matrix4 operator*(const Matrix4& a, const Matrix4& b) {
@@ -18,13 +18,14 @@ inline Matrix4 operator*(const Matrix4& a, const Matrix4& b) {
   return c;
 }
 
-/// World to camera: the rows are the camera's axes, which look along −back.
+/// The matrix from the world to a camera: its rows are the camera's axes, which look along −back.
 inline Matrix4 look(Vec3d eye, Vec3d right, Vec3d up, Vec3d back) {
   return {right.x, up.x, back.x, 0, right.y,          up.y,          back.y,          0,
           right.z, up.z, back.z, 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1};
 }
 
-/// Camera to clip space without perspective: x and y in ±half, depth near … far before the eye.
+/// The matrix from a camera to clip space without perspective: x and y in ±half, depth near … far
+/// before the eye.
 inline Matrix4 orthographic(double half, double near_plane, double far_plane) {
   const double range = far_plane - near_plane;
   return {1 / half,   0, 0, 0, 0,

@@ -12,8 +12,8 @@ struct Tint {
   Vec3f front, back;  ///< linear albedo
 };
 
-// Dyed fabrics, each clear against the others; the back of a cloth is paler. Red comes late:
-// markers are red.
+// The colours of dyed fabrics, each clear against the others; the back of a cloth is paler. Red
+// comes late, because markers are red.
 constexpr Tint kFabrics[] = {
     {{0.045f, 0.17f, 0.33f}, {0.16f, 0.29f, 0.43f}},  // woad
     {{0.62f, 0.36f, 0.06f}, {0.66f, 0.47f, 0.20f}},   // weld
@@ -26,11 +26,12 @@ constexpr Tint kFabrics[] = {
 };
 constexpr Vec3f kMannequin{0.68f, 0.63f, 0.57f};
 
+/// A buffer that is never written again. It holds one element at least, as it cannot be empty.
 template <class T>
 GLuint constant_buffer(const std::vector<T>& data) {
   GLuint buffer = 0;
   glCreateBuffers(1, &buffer);
-  const T one{};  // a buffer cannot be empty
+  const T one{};
   const bool empty = data.empty();
   glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(sizeof(T) * (empty ? 1 : data.size())),
                        empty ? &one : data.data(), 0);
@@ -47,6 +48,9 @@ MeshPass::MeshPass(const World& world, const VertexBuffers& vertices)
       positions_(vertices.positions()),
       normals_(vertices.normals()) {
   upload_constants();
+
+  // The picture reads vertices from storage buffers; only the shadow map needs an array of
+  // attributes.
   glCreateVertexArrays(1, &empty_array_);
   glCreateVertexArrays(1, &vertex_array_);
   glVertexArrayVertexBuffer(vertex_array_, 0, positions_, 0, sizeof(Vec3f));
@@ -60,6 +64,7 @@ MeshPass::~MeshPass() {
   for (GLuint array : {vertex_array_, empty_array_}) glDeleteVertexArrays(1, &array);
 }
 
+/// The shaders read the faces, their rest frames and the directions of their threads.
 void MeshPass::upload_constants() {
   using Float2 = std::array<float, 2>;
   using Float4 = std::array<float, 4>;
@@ -68,10 +73,12 @@ void MeshPass::upload_constants() {
     inverses.push_back({static_cast<float>(a), static_cast<float>(b), static_cast<float>(c),
                         static_cast<float>(d)});
   }
+
   std::vector<Float2> threads;
   for (const auto& corners : material_coordinates(world_))
     for (const Vec2d at : corners)
       threads.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
+
   faces_ = constant_buffer(world_.face);
   inverses_ = constant_buffer(inverses);
   threads_ = constant_buffer(threads);
@@ -80,9 +87,12 @@ void MeshPass::upload_constants() {
 void MeshPass::draw(bool draft) const {
   const ShaderProgram& program = draft ? draft_ : mesh_;
   program.use();
+
   glBindVertexArray(empty_array_);
   const GLuint buffers[] = {positions_, normals_, faces_, inverses_, threads_};
   glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, 5, buffers);
+
+  // Fabrics take turns; bodies have one colour.
   std::size_t fabric = 0;
   for (const WorldObject& object : world_.objects) {
     const Tint tint =

@@ -1,4 +1,4 @@
-// Draws the objects of a world, into the picture and into shadow maps.
+// Drawing the objects of a world, into the picture and into shadow maps.
 #pragma once
 
 #include "render/matrix.h"
@@ -8,7 +8,8 @@
 
 namespace icloth {
 
-/// Constant buffers of a world's faces and the programs that draw them. Needs a current context.
+/// The constant buffers of a world's faces and the programs that draw them. Needs a current
+/// context.
 class MeshPass {
  public:
   MeshPass(const World& world, const VertexBuffers& vertices);
@@ -16,9 +17,10 @@ class MeshPass {
   MeshPass(const MeshPass&) = delete;
   MeshPass& operator=(const MeshPass&) = delete;
 
-  /// All objects, lit by the studio's uniform block, into the bound framebuffer.
+  /// Draws all objects, lit by the studio's uniform block, into the bound framebuffer.
   void draw(bool draft) const;
-  /// Their depth as the light sees it. `matrix`: world to clip space of the light.
+  /// Draws their depth as the light sees it. `matrix` leads from the world to the clip space of the
+  /// light.
   void draw_depth(const Matrix4& matrix) const;
 
  private:

@@ -16,12 +16,14 @@ constexpr Colour kHover{1, 1, 1, 0.9f};
 constexpr Colour kRim{0.01f, 0.01f, 0.015f, 0.85f};
 constexpr int kRound = 20;  // corners of a disc
 
-/// From easy green over yellow to red, where the pull is as large as it may be.
+/// The colour of a pull: from easy green over yellow to red, where the pull is as large as it may
+/// be.
 Colour saturation_colour(double saturation) {
   const auto s = static_cast<float>(std::clamp(saturation, 0., 1.));
   return {std::min(1.f, 0.06f + 1.6f * s), std::min(0.6f, 1.2f * (1 - s)), 0.05f, 1};
 }
 
+/// Collects triangles that face the camera, with sizes in pixels.
 class Builder {
  public:
   Builder(const Camera& camera, int height)
@@ -33,7 +35,7 @@ class Builder {
     vertex(c, colour);
   }
 
-  /// A quad that faces the eye, `width` pixels wide at both ends.
+  /// Adds a quad that faces the eye, `width` pixels wide at both ends.
   void line(Vec3d a, Vec3d b, double width, const Colour& colour) {
     const Vec3d across = normalized(cross(b - a, 0.5 * (a + b) - eye_));
     const Vec3d at_a = (0.5 * width * pixel(a)) * across, at_b = (0.5 * width * pixel(b)) * across;
@@ -41,7 +43,7 @@ class Builder {
     triangle(a - at_a, b + at_b, b - at_b, colour);
   }
 
-  /// A ball as a disc that is lighter at the centre, with a dark rim.
+  /// Adds a ball as a disc that is lighter at the centre, with a dark rim.
   void ball(Vec3d centre, double radius, const Colour& colour) {
     const Vec3d front = lifted(centre, 1.5 * radius);
     ring(lifted(centre, 1.4 * radius), radius, radius + 1.2, kRim);
@@ -64,7 +66,7 @@ class Builder {
     }
   }
 
-  /// Moved towards the eye by so many pixels, so that a flat shape is not cut by the cloth.
+  /// Moves a point towards the eye by so many pixels, so that a flat shape is not cut by the cloth.
   Vec3d lifted(Vec3d p, double pixels) const {
     return p + (pixels * pixel(p)) * normalized(eye_ - p);
   }
@@ -98,22 +100,30 @@ Vec3d at(const Frame& frame, Index vertex) {
 std::vector<OverlayVertex> overlay_triangles(const World& world, const Frame& frame,
                                              const Camera& camera, int height) {
   Builder builder(camera, height);
+
+  // Offending faces are filled and outlined, since a face that is seen edge-on must still be found.
   for (Index f : frame.marked_faces) {
     const Triangle& t = world.face[static_cast<std::size_t>(f)];
     const Vec3d a = builder.lifted(at(frame, t[0]), 1), b = builder.lifted(at(frame, t[1]), 1),
                 c = builder.lifted(at(frame, t[2]), 1);
     builder.triangle(a, b, c, kMark);
-    builder.line(a, b, 2, kMark);  // a face seen edge-on must still be found
+    builder.line(a, b, 2, kMark);
     builder.line(b, c, 2, kMark);
     builder.line(c, a, 2, kMark);
   }
+
+  // Pins are small balls.
   for (Index v : frame.marked_vertices) builder.ball(at(frame, v), 3, kPin);
+
+  // Every handle is a line from the cloth to its target, coloured by how hard it pulls.
   for (const HandleState& handle : frame.handles) {
     const Colour colour = saturation_colour(handle.saturation);
     builder.line(builder.lifted(handle.hit, 4), builder.lifted(handle.target, 4), 2.5, colour);
     builder.ball(handle.hit, 4, colour);
     builder.ball(handle.target, 6, colour);
   }
+
+  // The patch under the pointer is shown as rings.
   for (const Vec3f point : frame.hover) {
     const Vec3d p = builder.lifted(convert<double>(point), 8);
     builder.ring(p, 6, 8, kHover);

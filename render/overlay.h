@@ -13,7 +13,7 @@ struct OverlayVertex {
   float colour[4];  ///< linear, with alpha
 };
 
-/// Triangles of everything in the frame that is not cloth or body, three vertices each. Shapes
+/// The triangles of everything in the frame that is not cloth or body, three vertices each. Shapes
 /// face the camera; lines are quads. `height` is that of the picture in pixels.
 std::vector<OverlayVertex> overlay_triangles(const World& world, const Frame& frame,
                                              const Camera& camera, int height);

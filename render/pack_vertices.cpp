@@ -6,6 +6,8 @@ namespace icloth {
 
 VertexFaces vertex_faces(Index vertices, std::span<const Triangle> faces) {
   VertexFaces list;
+
+  // The corners are listed and counted by vertex; the counts become offsets.
   list.first.assign(static_cast<std::size_t>(vertices) + 1, 0);
   for (const Triangle& t : faces) {
     for (const Index v : t) {
@@ -15,6 +17,8 @@ VertexFaces vertex_faces(Index vertices, std::span<const Triangle> faces) {
   }
   for (std::size_t v = 0; v < static_cast<std::size_t>(vertices); ++v)
     list.first[v + 1] += list.first[v];
+
+  // The faces of each vertex follow in ascending order.
   list.around.resize(list.corners.size());
   std::vector<Index> next = list.first;
   for (std::size_t k = 0; k < list.corners.size(); ++k) {
@@ -27,9 +31,12 @@ VertexFaces vertex_faces(Index vertices, std::span<const Triangle> faces) {
 void pack_vertices(const VertexFaces& faces, std::span<const Vec3f> source, Vec3f* positions,
                    Vec3f* normals) {
   assert(source.size() == static_cast<std::size_t>(faces.vertices()));
-  const PackVertex pack{source.data(),      faces.corners.data(),
-                        faces.first.data(), faces.around.data(),
-                        positions,          normals};
+  const PackVertex pack{.source = source.data(),
+                        .corners = faces.corners.data(),
+                        .first = faces.first.data(),
+                        .around = faces.around.data(),
+                        .positions = positions,
+                        .normals = normals};
   for (Index v = 0; v < faces.vertices(); ++v) pack(v);
 }
 

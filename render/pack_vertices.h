@@ -1,4 +1,4 @@
-// Positions and normals as the shaders read them: one text for the host and for a CUDA device, so
+// Positions and normals as the shaders read them. One text serves the host and a CUDA device, so
 // that a picture does not depend on where the vertices were packed.
 #pragma once
 
@@ -19,13 +19,13 @@ struct VertexFaces {
   Index vertices() const { return static_cast<Index>(first.size()) - 1; }
 };
 
-/// Every entry of `faces` is less than `vertices`.
+/// Makes the lists; every entry of `faces` must be less than `vertices`.
 VertexFaces vertex_faces(Index vertices, std::span<const Triangle> faces);
 
 /// Writes position and unit normal of one vertex. The normal is the sum of the faces' normals,
-/// weighted by area, gathered in the order of the faces: a fixed order, and no atomics. A vertex
-/// whose faces cancel out, or that has none, gets (0, 1, 0). Built without contraction everywhere,
-/// so the bits are the same on every processor.
+/// weighted by area and gathered in the order of the faces, which is fixed and needs no atomics. A
+/// vertex whose faces cancel out, or that has none, gets (0, 1, 0). It is built without contraction
+/// everywhere, so the bits are the same on every processor.
 struct PackVertex {
   const Vec3f* source;   ///< [m] (V)
   const Index* corners;  ///< as in VertexFaces
@@ -51,7 +51,7 @@ struct PackVertex {
   }
 };
 
-/// All vertices on the host. `positions` [m] and `normals` may be write-only memory (V).
+/// Packs all vertices on the host. `positions` [m] and `normals` may be write-only memory (V).
 void pack_vertices(const VertexFaces& faces, std::span<const Vec3f> source, Vec3f* positions,
                    Vec3f* normals);
 

@@ -1,4 +1,4 @@
-// What is under the pointer.
+// The element under the pointer.
 #pragma once
 
 #include <span>
@@ -20,15 +20,15 @@ struct Pick {
 
   bool hit_cloth() const { return face != kNone; }
   bool hit_obstacle() const { return obstacle_face != kNone; }
-  /// The cloth is there, and nothing solid before it: this is what a hand can reach.
+  /// True when the cloth is there and nothing solid before it, so that a hand can reach it.
   bool reachable() const {
     return hit_cloth() && (!hit_obstacle() || distance <= obstacle_distance);
   }
 };
 
-/// Nearest cloth face and nearest obstacle face along the ray, both sides count. `positions` are
-/// those of all vertices of the world; every face is tested (about 1 ms for 100K faces).
-/// On equal distance the smaller face number wins.
+/// The nearest cloth face and the nearest obstacle face along the ray; both sides count.
+/// `positions` are those of all vertices of the world; every face is tested. On equal distance the
+/// smaller face number wins.
 Pick pick(const World& world, std::span<const Vec3f> positions, const Ray& ray);
 
 }  // namespace icloth

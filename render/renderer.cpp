@@ -24,7 +24,7 @@ namespace {
 constexpr int kGroundCorners = 64;  // as in ground.vert.glsl
 constexpr std::string_view kViewNames[] = {"shaded", "wireframe", "strain"};
 
-/// What a quality costs.
+/// The cost of a quality.
 struct Settings {
   int samples;       ///< pictures with lights of their own that are averaged
   int side;          ///< samples along one side of a pixel in each of them
@@ -51,6 +51,7 @@ struct StudioBlock {
   float eye[4], key[4], dome[4], ground[4], ray_centre[4], ray_right[4], ray_up[4], options[4];
 };
 
+/// These write a matrix or a vector as the uniform block holds it.
 void store(float (&out)[16], const Matrix4& m) {
   std::transform(m.begin(), m.end(), out, [](double v) { return static_cast<float>(v); });
 }
@@ -60,7 +61,7 @@ void store(float (&out)[4], Vec3d v, double w = 0) {
   std::transform(values, values + 4, out, [](double e) { return static_cast<float>(e); });
 }
 
-/// Clip space (−1 … 1) to texture space (0 … 1).
+/// The matrix from clip space (−1 … 1) to texture space (0 … 1).
 constexpr Matrix4 kToTexture{0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5, 0.5, 1};
 
 }  // namespace
@@ -73,6 +74,7 @@ ViewMode parse_view_mode(std::string_view name) {
   throw InputError("--view '" + std::string(name) + "', expected shaded, wireframe or strain");
 }
 
+/// The state of the renderer: its programs, buffers and targets. Needs a current context.
 struct Renderer::Parts {
   Parts(const World& the_world, VertexOptions options);
   ~Parts();
@@ -114,6 +116,7 @@ Renderer::Parts::Parts(const World& the_world, VertexOptions options)
       overlay("overlay.vert.glsl", "overlay.frag.glsl"),
       add("screen.vert.glsl", "add.frag.glsl"),
       resolve("screen.vert.glsl", "resolve.frag.glsl") {
+  // The uniform block of the studio, and the layout of the overlay's vertices.
   glCreateBuffers(1, &studio);
   glNamedBufferStorage(studio, sizeof(StudioBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
   glCreateBuffers(1, &overlay_buffer);
@@ -126,6 +129,8 @@ Renderer::Parts::Parts(const World& the_world, VertexOptions options)
     glVertexArrayAttribFormat(overlay_array, attribute, attribute == 0 ? 3 : 4, GL_FLOAT, GL_FALSE,
                               attribute * static_cast<GLuint>(sizeof(Vec3f)));
   }
+
+  // The floor lies under the lowest vertex of the start state.
   if (!world.position.empty()) start_ground = world.position.front().y;
   for (const Vec3d p : world.position) start_ground = std::min(start_ground, p.y);
 }
@@ -137,12 +142,18 @@ Renderer::Parts::~Parts() {
 
 void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width, int height) {
   vertices.update(frame.positions, frame.on_device);
+
+  // The bounds of the frame decide where the light looks, and where the floor is.
   bounds = bounds_of(frame.positions, static_cast<std::size_t>(world.cloth_vertices));
   ground = chosen_ground.value_or(std::min(start_ground, bounds.lowest));
+
+  // Markers change with the camera, so their triangles are made for every frame.
   const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
   overlay_count = static_cast<int>(list.size());
   glNamedBufferData(overlay_buffer, static_cast<GLsizeiptr>(list.size() * sizeof(OverlayVertex)),
                     list.data(), GL_STREAM_DRAW);
+
+  // The targets follow the quality and the size of the picture.
   key_map.resize(settings.shadow_size, settings.shadow_size);
   sample.resize(settings.side * width, settings.side * height);
   if (settings.samples == 1) return;
@@ -167,7 +178,7 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   store(block.eye, camera.eye());
   store(block.key, light.key, texel);
   store(block.dome, light.dome, dome ? texel : 0);
-  // A hair below the floor, so that an obstacle that is the floor wins.
+  // The floor lies a hair lower, so that an obstacle that is the floor wins.
   store(block.ground, {ground - 1e-3 * bounds.radius, bounds.centre.x, bounds.centre.z},
         bounds.radius);
   store(block.ray_centre, camera.forward());
@@ -179,6 +190,7 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   glNamedBufferSubData(studio, 0, sizeof block, &block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, studio);
 
+  // The shadow maps of this sample: one for the key light, and one for the sky where it is sampled.
   draw_depth(key_map, key_clip);
   key_map.bind_texture(0);
   if (dome) draw_depth(dome_map, dome_clip);
@@ -188,8 +200,12 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
 void Renderer::Parts::draw_depth(Target& map, const Matrix4& matrix) const {
   map.bind();
   glEnable(GL_DEPTH_TEST);
-  glEnable(GL_DEPTH_CLAMP);  // what is nearer to the light than the map's range still shades
+
+  // Geometry that is nearer to the light than the map's range still casts a shadow.
+  glEnable(GL_DEPTH_CLAMP);
   glClear(GL_DEPTH_BUFFER_BIT);
+
+  // The offset keeps faces from shading themselves.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 4);
   meshes.draw_depth(matrix);
@@ -202,13 +218,17 @@ void Renderer::Parts::draw_sample(bool floor) const {
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
   meshes.draw(quality == Quality::draft);
-  cover(backdrop);  // lies at the far plane: only where no mesh is
+
+  // The backdrop lies at the far plane, so it shows only where no mesh is.
+  cover(backdrop);
+
   if (floor) draw_ground();
   if (overlay_count > 0) draw_overlay();
   glDisable(GL_DEPTH_TEST);
 }
 
-// Multiplies what is behind it, and hides nothing: cloth that falls below the floor stays visible.
+// Multiplies the colours behind the floor and hides nothing, so that cloth that falls below it
+// stays visible.
 void Renderer::Parts::draw_ground() const {
   (quality == Quality::draft ? draft_ground_disc : ground_disc).use();
   glBindVertexArray(empty_array);
@@ -225,9 +245,13 @@ void Renderer::Parts::draw_overlay() const {
   glBindVertexArray(overlay_array);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+
+  // A first pass without depth test gives a hint of markers behind the cloth.
   glDisable(GL_DEPTH_TEST);
-  overlay.set("opacity", 0.35f);  // a hint of what is behind the cloth
+  overlay.set("opacity", 0.35f);
   glDrawArrays(GL_TRIANGLES, 0, overlay_count);
+
+  // The second pass draws them in full where they are visible.
   glEnable(GL_DEPTH_TEST);
   overlay.set("opacity", 1.0f);
   glDrawArrays(GL_TRIANGLES, 0, overlay_count);
@@ -280,12 +304,15 @@ bool Renderer::shares_vertices() const {
 void Renderer::draw(const Frame& frame, const Camera& camera, int width, int height,
                     unsigned target_framebuffer) {
   if (width < 1 || height < 1) return;
+
+  // The state of OpenGL may have been changed by anybody since the last picture.
   for (GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB})
     glDisable(off);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 
+  // A picture is the mean of samples, each with light from another direction.
   parts_->upload(frame, camera, width, height);
   const int samples = parts_->settings.samples;
   for (int i = 0; i < samples; ++i) {
@@ -300,10 +327,12 @@ void Renderer::draw(const Frame& frame, const Camera& camera, int width, int hei
 Image Renderer::picture(const Frame& frame, const Camera& camera, int width, int height) {
   parts_->bytes.resize(width, height);
   draw(frame, camera, width, height, parts_->bytes.framebuffer());
+
+  // OpenGL counts rows from below.
   Image flipped(width, height), image(width, height);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, flipped.pixels.data());
-  for (int y = 0; y < height; ++y)  // OpenGL counts rows from below
+  for (int y = 0; y < height; ++y)
     std::copy_n(flipped.at(0, height - 1 - y), 4 * width, image.at(0, y));
   return image;
 }

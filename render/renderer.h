@@ -1,5 +1,5 @@
-// Draws a published state: fabric, bodies, ground, shadow, handles and markers. It never writes
-// the state, and knows nothing of windows.
+// Drawing a published state: fabric, bodies, ground, shadow, handles and markers. The renderer
+// never writes the state, and knows nothing of windows.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@
 
 namespace icloth {
 
+/// The way of showing the fabric.
 enum class ViewMode {
   shaded,     ///< fabric as the eye sees it
   wireframe,  ///< shaded, with the edges of the mesh
@@ -22,16 +23,17 @@ enum class ViewMode {
 };
 
 std::span<const std::string_view> view_mode_names();
-/// Throws InputError naming the view and the ones there are.
+/// Reads the name of a view. Throws InputError that names it and the views that exist.
 ViewMode parse_view_mode(std::string_view name);
 
+/// The effort for a picture.
 enum class Quality {
   draft,        ///< one sample a pixel, hard work avoided: software rendering while things move
   interactive,  ///< 2 × 2 samples a pixel, soft shadow from one map
   still,        ///< area light and sky sampled by many shadow maps; the same bits every time
 };
 
-/// What is drawn. The spans must stay valid during draw() only.
+/// The content of a picture. The spans must stay valid during draw() only.
 struct Frame {
   std::span<const Vec3f> positions;            ///< all vertices of the world [m]
   const DevicePositions* on_device = nullptr;  ///< the same on the solver's device; null: none
@@ -43,6 +45,7 @@ struct Frame {
   double strain_range = 0.1;  ///< strain that gets the last colour of the scale
 };
 
+/// Draws the pictures of one world.
 class Renderer {
  public:
   /// Needs a current context with its functions loaded, here and in every call, also to destroy.
@@ -59,18 +62,18 @@ class Renderer {
   void set_ground(double height);
 
   /// Fills `width` × `height` pixels of a framebuffer (0: the window's) with the finished picture
-  /// in sRGB bytes; everything there is overwritten. Blending, depth test and face culling are
-  /// off afterwards, the framebuffer is bound, and the viewport covers it.
+  /// in sRGB bytes; everything there is overwritten. Blending, depth test and face culling are off
+  /// afterwards, the framebuffer is bound, and the viewport covers it.
   void draw(const Frame& frame, const Camera& camera, int width, int height,
             unsigned target_framebuffer);
 
-  /// The same into a picture.
+  /// Draws into an image.
   Image picture(const Frame& frame, const Camera& camera, int width, int height);
 
-  /// How the vertices of the last picture reached the GPU and why, e.g. "host copy (built without
-  /// CUDA)".
+  /// Tells how the vertices of the last picture reached the GPU and why, for example "host copy
+  /// (built without CUDA)".
   std::string vertex_way() const;
-  /// True when that was CUDA-OpenGL interop.
+  /// True when they came by CUDA-OpenGL interop.
   bool shares_vertices() const;
 
  private:

@@ -12,16 +12,20 @@ namespace {
 
 constexpr GLsizei kLogLength = 2000;
 
+/// Compiles one shader from its text and the shared texts before it.
 GLuint compile(GLenum stage, std::string_view name, bool draft) {
   std::string source = "#version 450 core\n";
   if (draft) source += "#define DRAFT\n";
   source += embedded_shader("lights.glsl");
   if (stage == GL_FRAGMENT_SHADER) source += embedded_shader("shadow_lookup.glsl");
   source += "#line 1\n" + std::string(embedded_shader(name));
+
   const GLuint shader = glCreateShader(stage);
   const char* text = source.c_str();
   glShaderSource(shader, 1, &text, nullptr);
   glCompileShader(shader);
+
+  // A shader that does not compile is reported with the compiler's message.
   GLint compiled = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
   if (compiled) return shader;
@@ -42,6 +46,8 @@ ShaderProgram::ShaderProgram(std::string_view vertex, std::string_view fragment,
   glLinkProgram(program_);
   glDeleteShader(first);
   if (second) glDeleteShader(second);
+
+  // Errors between the stages show only when they are linked.
   GLint linked = 0;
   glGetProgramiv(program_, GL_LINK_STATUS, &linked);
   if (linked) return;

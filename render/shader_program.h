@@ -13,9 +13,10 @@ std::string_view embedded_shader(std::string_view name);
 /// A linked program of a vertex and a fragment shader. Owns it; needs a current context.
 class ShaderProgram {
  public:
-  /// Both shaders get "#version 450 core" and lights.glsl put before them, the fragment shader
-  /// shadow_lookup.glsl too. An empty fragment name: depth only. `draft` defines DRAFT, which
-  /// leaves out what software rendering is slow at. Throws DeviceError with the compiler's message.
+  /// Compiles and links. Both shaders get "#version 450 core" and lights.glsl put before them, the
+  /// fragment shader shadow_lookup.glsl too. An empty fragment name makes a program that writes
+  /// depth only. `draft` defines DRAFT, which leaves out the parts that software rendering is slow
+  /// at. Throws DeviceError with the compiler's message.
   ShaderProgram(std::string_view vertex, std::string_view fragment, bool draft = false);
   ~ShaderProgram();
   ShaderProgram(const ShaderProgram&) = delete;

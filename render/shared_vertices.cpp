@@ -22,15 +22,19 @@ void SharedVertices::update(std::span<const Vec3f> positions, const DevicePositi
   if (!write_on_device(on_device)) buffers_.fill_from_host(faces_, positions);
 }
 
-/// A writer that fails is never tried again: a driver that stumbled once would make pictures
-/// stutter.
+/// Lets the writer fill the buffers, where there is one. A writer that fails is never tried again,
+/// as a driver that stumbled once would make pictures stutter.
 bool SharedVertices::write_on_device(const DevicePositions* positions) {
   if (!options_.on_device) return false;
+
+  // A buffer that CUDA holds cannot be mapped for the host, so the writer is given up.
   if (!positions) {
-    writer_.reset();  // a buffer that CUDA holds is not mapped for the host
+    writer_.reset();
     reason_ = "the solver runs on the CPU";
     return false;
   }
+
+  // The first frame with positions on a device tries to make a writer.
   if (!writer_) {
     MadeWriter made = options_.make_writer(faces_, buffers_, positions->device);
     writer_ = std::move(made.writer);
@@ -40,6 +44,7 @@ bool SharedVertices::write_on_device(const DevicePositions* positions) {
     }
     reason_ = writer_->place();
   }
+
   const std::string failure = writer_->write(*positions);
   if (!failure.empty()) give_up(failure);
   return failure.empty();
@@ -49,7 +54,9 @@ void SharedVertices::give_up(const std::string& reason) {
   writer_.reset();
   options_.on_device = false;
   reason_ = reason;
-  while (glGetError() != GL_NO_ERROR) {  // what went wrong is said already
+
+  // The error is told already, so the checks after drawing must not find it again.
+  while (glGetError() != GL_NO_ERROR) {
   }
 }
 

@@ -1,4 +1,4 @@
-// Positions and normals of all vertices on the GPU, by one of two ways.
+// Positions and normals of all vertices on the GPU, by one of two upload paths.
 #pragma once
 
 #include <span>
@@ -14,11 +14,11 @@ struct VertexOptions {
   MakeVertexWriter make_writer = make_cuda_writer;
 };
 
-/// Buffers of positions and normals for drawing. Positions that the solver hands out on a CUDA
-/// device are packed into the buffers there (CUDA-OpenGL interop) and cross no bus; otherwise the
-/// host packs and copies them. Both give the same bits. Which way runs is found out by a probe
-/// with the first such frame, and when interop fails, then or later, the host copies from then
-/// on. Needs a current context, also to destroy.
+/// Buffers of positions and normals for drawing. Positions that the solver leaves on a CUDA device
+/// are packed into the buffers there (CUDA-OpenGL interop) and cross no bus; otherwise the host
+/// packs and copies them. Both give the same bits. A probe with the first such frame finds out
+/// which path works, and when interop fails, then or later, the host copies from then on. Needs a
+/// current context, also to destroy.
 class SharedVertices {
  public:
   enum class Way { host_copy, interop };
@@ -26,12 +26,13 @@ class SharedVertices {
   explicit SharedVertices(const World& world, VertexOptions options = {});
 
   /// Fills the buffers with the positions of all vertices [m] (V) and the normals computed from
-  /// them. `on_device`: the same positions on the solver's device; null: the solver has none.
+  /// them. `on_device` are the same positions on the solver's device, or null where the solver has
+  /// none.
   void update(std::span<const Vec3f> positions, const DevicePositions* on_device);
 
-  /// Of the last update.
+  /// The path of the last update.
   Way way() const { return writer_ ? Way::interop : Way::host_copy; }
-  /// With the reason: "host copy (the solver runs on the CPU)".
+  /// The path with its reason: "host copy (the solver runs on the CPU)".
   std::string way_text() const;
 
   const VertexBuffers& buffers() const { return buffers_; }

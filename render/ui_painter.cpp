@@ -38,14 +38,16 @@ void UiPainter::set_font(const std::uint8_t* pixels, int width, int height) {
   glTextureParameteri(font_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
-/// The buffers get new storage every time: writing into what may still be drawn from has been
-/// seen to go wrong on some drivers.
+/// The buffers get new storage every time: writing into storage that may still be drawn from has
+/// been seen to go wrong on some drivers.
 void UiPainter::paint(const UiDrawing& drawing, int width, int height, unsigned framebuffer) {
   if (drawing.batches.empty()) return;
   glNamedBufferData(vertices_, static_cast<GLsizeiptr>(drawing.vertices.size_bytes()),
                     drawing.vertices.data(), GL_STREAM_DRAW);
   glNamedBufferData(indices_, static_cast<GLsizeiptr>(drawing.indices.size_bytes()),
                     drawing.indices.data(), GL_STREAM_DRAW);
+
+  // The interface is drawn over the picture, with blending and a clip rectangle for each batch.
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   glDisable(GL_DEPTH_TEST);
@@ -53,11 +55,14 @@ void UiPainter::paint(const UiDrawing& drawing, int width, int height, unsigned 
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_SCISSOR_TEST);
+
   program_.use();
   program_.set("corner", Vec3f{drawing.left, drawing.top, 0});
   program_.set("size", Vec3f{drawing.width, drawing.height, 1});
   glBindTextureUnit(0, font_);
   glBindVertexArray(array_);
+
+  // OpenGL counts clip rectangles from below.
   for (const UiBatch& batch : drawing.batches) {
     const GLint left = static_cast<GLint>(batch.clip[0]), top = static_cast<GLint>(batch.clip[1]);
     const GLint right = static_cast<GLint>(batch.clip[2]);
@@ -69,6 +74,7 @@ void UiPainter::paint(const UiDrawing& drawing, int width, int height, unsigned 
                              GL_UNSIGNED_SHORT, reinterpret_cast<const void*>(offset),
                              static_cast<GLint>(batch.base_vertex));
   }
+
   glBindVertexArray(0);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
@@ -95,7 +101,10 @@ Image read_picture(const Target& picture) {
   std::vector<std::uint8_t> bytes(image.pixels.size());
   glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
+
   glReadPixels(0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
+
+  // Rows are turned round, as OpenGL counts them from below, and the picture is made opaque.
   const std::size_t row = 4 * static_cast<std::size_t>(image.width);
   for (int y = 0; y < image.height; ++y) {
     const std::uint8_t* from = bytes.data() + static_cast<std::size_t>(image.height - 1 - y) * row;

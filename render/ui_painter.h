@@ -1,4 +1,4 @@
-// Paints the user interface: textured triangles in window pixels. It knows nothing of the library
+// Painting the user interface: textured triangles in window pixels. It knows nothing of the library
 // that makes them, so that OpenGL stays in render/ and the interface library in app/.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace icloth {
 
-/// 20 bytes, the layout that interface libraries commonly use.
+/// A vertex of 20 bytes, the layout that interface libraries commonly use.
 struct UiVertex {
   float x, y;            ///< from the top left corner [logical pixels]
   float u, v;            ///< in the font texture
@@ -40,9 +40,9 @@ class UiPainter {
   UiPainter(const UiPainter&) = delete;
   UiPainter& operator=(const UiPainter&) = delete;
 
-  /// RGBA bytes, rows from the top.
+  /// Takes the font texture as RGBA bytes, rows from the top.
   void set_font(const std::uint8_t* pixels, int width, int height);
-  /// Over what is there; `width` × `height` are those of the framebuffer in pixels.
+  /// Paints over the framebuffer, whose size in pixels is `width` × `height`.
   void paint(const UiDrawing& drawing, int width, int height, unsigned framebuffer);
 
  private:
@@ -58,7 +58,7 @@ void clear_picture(unsigned framebuffer, float red, float green, float blue);
 void show_picture(const Target& picture, unsigned framebuffer, int height, int left, int top,
                   int wide, int high);
 
-/// Waits until everything asked for so far is drawn.
+/// Waits until all drawing that was asked for is done.
 void finish_drawing();
 
 /// The finished picture as an image, rows from the top.

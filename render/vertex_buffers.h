@@ -7,11 +7,11 @@
 
 namespace icloth {
 
-/// Positions and normals: shader storage, floats, three a vertex, tightly packed. Needs a current
+/// Positions and normals as shader storage: three floats a vertex, tightly packed. Needs a current
 /// context, also to destroy.
 class VertexBuffers {
  public:
-  /// Filled with zeros.
+  /// Makes buffers filled with zeros.
   explicit VertexBuffers(Index vertices);
   ~VertexBuffers();
   VertexBuffers(const VertexBuffers&) = delete;
@@ -24,7 +24,7 @@ class VertexBuffers {
   /// Packs the vertices on the host; `positions` [m] are all of them (V).
   void fill_from_host(const VertexFaces& faces, std::span<const Vec3f> positions) const;
 
-  /// What OpenGL reads there now (V). Waits for all drawing.
+  /// Reads the present content of both buffers (V). Waits for all drawing.
   void read_back(std::span<Vec3f> positions, std::span<Vec3f> normals) const;
 
  private:

@@ -1,4 +1,4 @@
-// How positions that are already on a device get into OpenGL's buffers.
+// The interface by which positions that are already on a device get into OpenGL's buffers.
 #pragma once
 
 #include <functional>
@@ -17,11 +17,11 @@ class VertexWriter {
  public:
   virtual ~VertexWriter() = default;
 
-  /// Writes position and normal of every vertex. Returns why it could not, in one line; empty: all
-  /// is written before OpenGL reads it. Never throws for reasons of the device.
+  /// Writes position and normal of every vertex. Returns in one line why it could not; an empty
+  /// text means that all is written before OpenGL reads it. Errors of the device are never thrown.
   virtual std::string write(const DevicePositions& positions) = 0;
 
-  /// Where it works, e.g. "CUDA device 0".
+  /// The place where it works, for example "CUDA device 0".
   virtual std::string place() const = 0;
 };
 

@@ -27,7 +27,8 @@ __global__ void pack_kernel(Index count, const PackVertex pack) {
   if (v < count) pack(static_cast<Index>(v));
 }
 
-/// Empty when the call worked. Otherwise the error is cleared, so that nobody else meets it.
+/// An empty text when the call worked. Otherwise the error is cleared, so that no later check meets
+/// it.
 std::string failure_of(const char* what, cudaError_t error) {
   if (error == cudaSuccess) return {};
   static_cast<void>(cudaGetLastError());
@@ -59,8 +60,8 @@ class DeviceList {
   void* memory_ = nullptr;
 };
 
-/// Registers the buffers once; maps both together for every frame. Works on a stream of its own
-/// that does not wait for the solver's later work, only for the positions that it is given.
+/// Registers the buffers once and maps both together for every frame. It works on a stream of its
+/// own that does not wait for the solver's later work, only for the positions that it is given.
 class CudaWriter final : public VertexWriter {
  public:
   ~CudaWriter() override;
@@ -129,6 +130,7 @@ std::string CudaWriter::register_buffers(const VertexBuffers& buffers) {
 }
 
 std::string CudaWriter::write(const DevicePositions& from) {
+  // Positions that could not be copied, or that belong elsewhere, are refused in one line.
   if (!from.failure.empty()) return from.failure;
   if (from.device != device_) {
     return "the solver runs on CUDA device " + std::to_string(from.device) +
@@ -140,17 +142,19 @@ std::string CudaWriter::write(const DevicePositions& from) {
   }
   std::string failure = failure_of("selecting the device", cudaSetDevice(device_));
   if (!failure.empty()) return failure;
-  // Work in the stream from here on starts when OpenGL has done what it was told before.
+
+  // Work in the stream from here on starts when OpenGL has finished its earlier commands.
   failure = failure_of("mapping the buffers", cudaGraphicsMapResources(2, resources_, stream_));
   if (!failure.empty()) return failure;
   failure = pack(from);
+
   // OpenGL goes on when the work in the stream is done.
   const std::string unmapping =
       failure_of("unmapping the buffers", cudaGraphicsUnmapResources(2, resources_, stream_));
   return failure.empty() ? unmapping : failure;
 }
 
-/// Every byte of both buffers is written: what was in them is lost by mapping.
+/// Writes every byte of both buffers, since mapping loses their content.
 std::string CudaWriter::pack(const DevicePositions& from) {
   PackVertex pack{
       from.data, corners_.data<Index>(), first_.data<Index>(), around_.data<Index>(), nullptr,
@@ -158,6 +162,8 @@ std::string CudaWriter::pack(const DevicePositions& from) {
   std::string failure = mapped_pointer(0, pack.positions);
   if (failure.empty()) failure = mapped_pointer(1, pack.normals);
   if (!failure.empty()) return failure;
+
+  // The stream waits until the solver has written the positions.
   failure = failure_of("waiting for the positions",
                        cudaStreamWaitEvent(stream_, static_cast<cudaEvent_t>(from.written), 0));
   if (!failure.empty()) return failure;
@@ -165,14 +171,16 @@ std::string CudaWriter::pack(const DevicePositions& from) {
   if (blocks > 0) pack_kernel<<<blocks, kThreads, 0, stream_>>>(vertices_, pack);
   failure = failure_of("packing the vertices", cudaGetLastError());
   if (!failure.empty()) return failure;
+
+  // The solver may write again when the kernel has read.
   failure = failure_of("recording the end of reading",
                        cudaEventRecord(static_cast<cudaEvent_t>(from.read), stream_));
-  // Nobody could wait for the kernel by the event, so it is waited for here.
+  // Without the event nobody could wait for the kernel, so it is waited for here.
   if (!failure.empty()) static_cast<void>(cudaStreamSynchronize(stream_));
   return failure;
 }
 
-/// The address may change from one mapping to the next.
+/// The address of a mapped buffer, which may change from one mapping to the next.
 std::string CudaWriter::mapped_pointer(int buffer, Vec3f*& out) const {
   void* pointer = nullptr;
   std::size_t bytes = 0;
@@ -186,6 +194,7 @@ std::string CudaWriter::mapped_pointer(int buffer, Vec3f*& out) const {
   return {};
 }
 
+/// Makes a writer without asking whether it works.
 MadeWriter make_unprobed(const VertexFaces& faces, const VertexBuffers& buffers, int device) {
   auto writer = std::make_unique<CudaWriter>();
   const std::string failure = writer->set_up(faces, buffers, device);
@@ -209,28 +218,37 @@ bool same_bits(const ProbeList& a, const ProbeList& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+/// Packs the pyramid by CUDA into buffers of OpenGL and reads them back; an empty text when the
+/// bits are the host's.
 std::string probe(int device) {
   std::string failure = failure_of("selecting the device", cudaSetDevice(device));
   if (!failure.empty()) return failure;
+
+  // The host's result is the expected one.
   const VertexFaces faces =
       vertex_faces(static_cast<Index>(kProbePoints.size()), std::span(kProbeFaces));
   ProbeList positions, normals;
   pack_vertices(faces, kProbePoints, positions.data(), normals.data());
 
+  // The device gets the same positions, as the solver would leave them.
   DeviceList source;
   failure = failure_of("copying to the device", source.upload(&kProbePoints, sizeof kProbePoints));
   if (!failure.empty()) return failure;
-  CudaPositions handed_out;
-  handed_out.copy(source.data<Vec3f>(), static_cast<Index>(kProbePoints.size()));
-  const VertexBuffers buffers(static_cast<Index>(kProbePoints.size()));  // outlives the writer
+
+  // OpenGL's buffers are written by CUDA; they must outlive the writer.
+  CudaPositions copied;
+  copied.copy(source.data<Vec3f>(), static_cast<Index>(kProbePoints.size()));
+  const VertexBuffers buffers(static_cast<Index>(kProbePoints.size()));
   const MadeWriter made = make_unprobed(faces, buffers, device);
   if (!made.writer) return made.reason;
-  failure = made.writer->write(handed_out);
+  failure = made.writer->write(copied);
   if (!failure.empty()) return failure;
+
+  // OpenGL reads them back, bit for bit.
   ProbeList read_positions{}, read_normals{};
   buffers.read_back(read_positions, read_normals);
   if (same_bits(read_positions, positions) && same_bits(read_normals, normals)) return {};
-  return "what CUDA writes, OpenGL does not read";
+  return "the bytes that CUDA writes are not those that OpenGL reads";
 }
 
 /// "llvmpipe" for "llvmpipe (LLVM 15.0.6, 256 bits)"; names of cards stay whole.
@@ -244,10 +262,12 @@ bool gl_is_nvidia() {
   return vendor && std::strstr(reinterpret_cast<const char*>(vendor), "NVIDIA");
 }
 
+/// The reason in words when OpenGL draws on something else than the CUDA device.
 std::string elsewhere(int device, int count) {
   std::string text = "OpenGL runs on " + gl_name() + ", not on ";
   text += count == 1 ? "the CUDA device" : "CUDA device " + std::to_string(device);
-  // Two graphics cards in one machine: the user can move OpenGL to the other, we never do.
+  // With two graphics cards in one machine the user can move OpenGL to the other one; the program
+  // never does.
   if (!gl_is_software() && !gl_is_nvidia()) {
     text +=
         "; on a laptop with two cards start it with __NV_PRIME_RENDER_OFFLOAD=1 "
@@ -264,21 +284,27 @@ void clear_gl_errors() {
 }  // namespace
 
 bool gl_runs_on_cuda(int device, std::string& reason) {
+  // Without a CUDA device there is nothing to share with.
   int count = 0;
   if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
     static_cast<void>(cudaGetLastError());
     reason = "no CUDA device";
     return false;
   }
+
+  // OpenGL may draw on the processor, in which case CUDA need not be asked.
   reason = elsewhere(device, count);
-  if (gl_is_software()) return false;  // CUDA need not be asked
+  if (gl_is_software()) return false;
+
+  // CUDA lists the devices that the current context draws on. Where it cannot say, the probe
+  // decides.
   std::array<int, 64> list{};
   unsigned listed = 0;
   const cudaError_t error = cudaGLGetDevices(
       &listed, list.data(), static_cast<unsigned>(list.size()), cudaGLDeviceListAll);
   if (error != cudaSuccess) {
     static_cast<void>(cudaGetLastError());
-    return gl_is_nvidia();  // CUDA cannot say: the probe decides
+    return gl_is_nvidia();
   }
   const auto end = list.begin() + std::min<std::size_t>(listed, list.size());
   return std::find(list.begin(), end, device) != end;
