@@ -295,10 +295,10 @@ Quality Renderer::quality() const { return parts_->quality; }
 
 void Renderer::set_ground(double height) { parts_->chosen_ground = height; }
 
-std::string Renderer::vertex_way() const { return parts_->vertices.way_text(); }
+std::string Renderer::upload_path() const { return parts_->vertices.path_text(); }
 
 bool Renderer::shares_vertices() const {
-  return parts_->vertices.way() == SharedVertices::Way::interop;
+  return parts_->vertices.path() == SharedVertices::Path::interop;
 }
 
 void Renderer::draw(const Frame& frame, const Camera& camera, int width, int height,

@@ -15,7 +15,7 @@
 
 namespace icloth {
 
-/// The way of showing the fabric.
+/// How the fabric is shown.
 enum class ViewMode {
   shaded,     ///< fabric as the eye sees it
   wireframe,  ///< shaded, with the edges of the mesh
@@ -72,7 +72,7 @@ class Renderer {
 
   /// Tells how the vertices of the last picture reached the GPU and why, for example "host copy
   /// (built without CUDA)".
-  std::string vertex_way() const;
+  std::string upload_path() const;
   /// True when they came by CUDA-OpenGL interop.
   bool shares_vertices() const;
 

@@ -12,9 +12,9 @@ SharedVertices::SharedVertices(const World& world, VertexOptions options)
       buffers_(world.vertices),
       reason_(options_.on_device ? "nothing drawn yet" : "asked for") {}
 
-std::string SharedVertices::way_text() const {
-  return std::string(way() == Way::interop ? "CUDA-OpenGL interop" : "host copy") + " (" + reason_ +
-         ")";
+std::string SharedVertices::path_text() const {
+  return std::string(path() == Path::interop ? "CUDA-OpenGL interop" : "host copy") + " (" +
+         reason_ + ")";
 }
 
 void SharedVertices::update(std::span<const Vec3f> positions, const DevicePositions* on_device) {

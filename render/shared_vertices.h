@@ -21,7 +21,7 @@ struct VertexOptions {
 /// current context, also to destroy.
 class SharedVertices {
  public:
-  enum class Way { host_copy, interop };
+  enum class Path { host_copy, interop };
 
   explicit SharedVertices(const World& world, VertexOptions options = {});
 
@@ -31,9 +31,9 @@ class SharedVertices {
   void update(std::span<const Vec3f> positions, const DevicePositions* on_device);
 
   /// The path of the last update.
-  Way way() const { return writer_ ? Way::interop : Way::host_copy; }
+  Path path() const { return writer_ ? Path::interop : Path::host_copy; }
   /// The path with its reason: "host copy (the solver runs on the CPU)".
-  std::string way_text() const;
+  std::string path_text() const;
 
   const VertexBuffers& buffers() const { return buffers_; }
 

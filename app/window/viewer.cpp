@@ -302,7 +302,7 @@ StatusFigures Viewer::figures() const {
   if (options_.build != Build::cuda32) {
     figures.device += threads_ == 1 ? ", 1 thread" : ", " + std::to_string(threads_) + " threads";
   }
-  figures.vertex_way = renderer_.vertex_way();
+  figures.upload_path = renderer_.upload_path();
   figures.ui_fps = static_cast<double>(frame_times_.size());
   if (window_.seconds() < note_end_) figures.note = note_;
   return figures;

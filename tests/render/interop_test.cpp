@@ -129,7 +129,7 @@ class Interop : public ::testing::Test {
 TEST_F(Interop, HostCopiesWhatASolverOnTheCpuTells) {
   SharedVertices vertices(world_);
   vertices.update(positions_, nullptr);
-  EXPECT_EQ(vertices.way_text(), "host copy (the solver runs on the CPU)");
+  EXPECT_EQ(vertices.path_text(), "host copy (the solver runs on the CPU)");
   Content packed{positions_, positions_};
   pack_vertices(vertex_faces(world_.vertices, world_.face), positions_, packed.positions.data(),
                 packed.normals.data());
@@ -142,7 +142,7 @@ TEST_F(Interop, HostCopiesWhenAskedTo) {
   Log log;
   Renderer renderer(world_, {.on_device = false, .make_writer = fake_maker(log)});
   picture(renderer, &on_device_);
-  EXPECT_EQ(renderer.vertex_way(), "host copy (asked for)");
+  EXPECT_EQ(renderer.upload_path(), "host copy (asked for)");
   EXPECT_EQ(log.made, 0);
 }
 
@@ -151,7 +151,7 @@ TEST_F(Interop, AFailingProbeFallsBackAndIsNotRepeated) {
   Renderer renderer(world_, {.make_writer = failing_maker(log)});
   for (int frame = 0; frame < 3; ++frame) {
     EXPECT_EQ(picture(renderer, &on_device_).pixels, host_picture().pixels);
-    EXPECT_EQ(renderer.vertex_way(), "host copy (injected)");
+    EXPECT_EQ(renderer.upload_path(), "host copy (injected)");
     EXPECT_FALSE(renderer.shares_vertices());
     move();
   }
@@ -168,7 +168,7 @@ TEST_F(Interop, AWriterDrawsWhatTheHostWouldDraw) {
       move();
       EXPECT_NE(image.pixels, host_picture().pixels) << "the test must see a difference";
     }
-    EXPECT_EQ(renderer.vertex_way(), "CUDA-OpenGL interop (fake device)");
+    EXPECT_EQ(renderer.upload_path(), "CUDA-OpenGL interop (fake device)");
     EXPECT_TRUE(renderer.shares_vertices());
     EXPECT_EQ(log.destroyed, 0);
   }
@@ -186,7 +186,7 @@ TEST_F(Interop, ALaterFailureFallsBackForGoodInTheSameFrame) {
     EXPECT_EQ(renderer.shares_vertices(), frame < 2);
     move();
   }
-  EXPECT_EQ(renderer.vertex_way(), "host copy (mapping the buffers failed: out of order)");
+  EXPECT_EQ(renderer.upload_path(), "host copy (mapping the buffers failed: out of order)");
   EXPECT_EQ(log.made, 1);
   EXPECT_EQ(log.written, 2);
   EXPECT_EQ(log.destroyed, 1) << "the buffers must be let go before the host maps them";
@@ -197,7 +197,7 @@ TEST_F(Interop, PositionsThatCouldNotBeCopiedFallBack) {
   Renderer renderer(world_, {.make_writer = fake_maker(log)});
   on_device_.failure = "CUDA: out of memory";
   EXPECT_EQ(picture(renderer, &on_device_).pixels, host_picture().pixels);
-  EXPECT_EQ(renderer.vertex_way(), "host copy (CUDA: out of memory)");
+  EXPECT_EQ(renderer.upload_path(), "host copy (CUDA: out of memory)");
 }
 
 TEST_F(Interop, FramesWithoutDevicePositionsLetTheBuffersGo) {
@@ -206,7 +206,7 @@ TEST_F(Interop, FramesWithoutDevicePositionsLetTheBuffersGo) {
   picture(renderer, &on_device_);
   EXPECT_EQ(picture(renderer, nullptr).pixels, host_picture().pixels);
   EXPECT_EQ(log.destroyed, 1);
-  EXPECT_EQ(renderer.vertex_way(), "host copy (the solver runs on the CPU)");
+  EXPECT_EQ(renderer.upload_path(), "host copy (the solver runs on the CPU)");
   picture(renderer, &on_device_);
   EXPECT_TRUE(renderer.shares_vertices());
 }
@@ -226,7 +226,7 @@ TEST_F(Interop, TheRealProbeSaysInOneLineWhyNot) {
   EXPECT_EQ(reason, where);
   Renderer renderer(world_);
   EXPECT_EQ(picture(renderer, &on_device_).pixels, host_picture().pixels);
-  EXPECT_EQ(renderer.vertex_way(), "host copy (" + where + ")");
+  EXPECT_EQ(renderer.upload_path(), "host copy (" + where + ")");
   EXPECT_NO_THROW(check_gl("the probe"));
 }
 
@@ -296,7 +296,7 @@ TEST_F(InteropOnDevice, BothWaysDrawEqualPixels) {
     const Image expected = copied.picture(frame, camera(), kWidth, kHeight);
     frame.on_device = on_device.get();
     EXPECT_EQ(shared.picture(frame, camera(), kWidth, kHeight).pixels, expected.pixels);
-    EXPECT_TRUE(shared.shares_vertices()) << shared.vertex_way();
+    EXPECT_TRUE(shared.shares_vertices()) << shared.upload_path();
     EXPECT_FALSE(copied.shares_vertices());
   }
 }
@@ -312,7 +312,7 @@ TEST_F(InteropOnDevice, BothWaysGiveEqualBits) {
     simulator->positions(positions);
     shared.update(positions, on_device.get());
     copied.update(positions, nullptr);
-    ASSERT_EQ(shared.way(), SharedVertices::Way::interop) << shared.way_text();
+    ASSERT_EQ(shared.path(), SharedVertices::Path::interop) << shared.path_text();
     const Content a = content_of(shared.buffers()), b = content_of(copied.buffers());
     EXPECT_TRUE(same_bits(a.positions, positions));
     EXPECT_TRUE(same_bits(a.positions, b.positions));
@@ -334,7 +334,7 @@ TEST_F(InteropOnDevice, DrawsWholeStatesWhileTheSolverRuns) {
     ++seen;
     const PublishedState& state = session.state();
     vertices.update(state.positions, state.on_device.get());
-    ASSERT_EQ(vertices.way(), SharedVertices::Way::interop) << vertices.way_text();
+    ASSERT_EQ(vertices.path(), SharedVertices::Path::interop) << vertices.path_text();
     ASSERT_TRUE(same_bits(content_of(vertices.buffers()).positions, state.positions));
   }
   EXPECT_EQ(seen, 100);

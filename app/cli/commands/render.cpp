@@ -194,11 +194,11 @@ int run_render(const RenderOptions& options) {
   frame.view = view;
   const Image image = renderer.picture(frame, camera, size.width, size.height);
   if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
-    throw DeviceError("--vertices interop: " + renderer.vertex_way());
+    throw DeviceError("--vertices interop: " + renderer.upload_path());
   write_png(options.out, image);
   if (!options.quiet && !result.start_refused) {
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
-    std::printf("vertices by %s\n", renderer.vertex_way().c_str());
+    std::printf("vertices by %s\n", renderer.upload_path().c_str());
   }
   if (!options.quiet) std::printf("%s\n", options.out.c_str());
   return result.clean() ? 0 : 1;

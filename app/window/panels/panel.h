@@ -54,8 +54,8 @@ struct PanelContext {
 
 /// Figures of the status bar that come from the program around the panels.
 struct StatusFigures {
-  std::string device;      ///< "cpu32, 3 threads"
-  std::string vertex_way;  ///< "host copy (built without CUDA)"
+  std::string device;       ///< "cpu32, 3 threads"
+  std::string upload_path;  ///< "host copy (built without CUDA)"
   double ui_fps = 0;
   std::string note;  ///< last message, empty after a while
 };

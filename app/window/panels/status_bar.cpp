@@ -78,7 +78,7 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
   std::snprintf(text, sizeof text, "window %.0f fps", figures.ui_fps);
   item(text);
   item((thousands(context.world.cloth_faces) + " triangles").c_str());
-  const std::string vertices = "vertices by " + figures.vertex_way;
+  const std::string vertices = "vertices by " + figures.upload_path;
   item(vertices.c_str(), colour::kDim);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", vertices.c_str());  // it may be cut off
   ImGui::End();
