@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "render/gl_context.h"
@@ -66,8 +65,6 @@ constexpr Matrix4 kToTexture{0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5,
 
 }  // namespace
 
-std::span<const std::string_view> view_mode_names() { return kViewNames; }
-
 ViewMode parse_view_mode(std::string_view name) {
   for (std::size_t k = 0; k < std::size(kViewNames); ++k)
     if (kViewNames[k] == name) return static_cast<ViewMode>(k);
@@ -92,11 +89,10 @@ struct Renderer::Parts {
   const World& world;
   Settings settings = settings_of(Quality::interactive);
   Quality quality = Quality::interactive;
-  std::optional<double> chosen_ground;  ///< [m]
-  double start_ground = 0;              ///< lowest vertex of the start state [m]
-  double ground = 0;                    ///< of the present frame [m]
-  Bounds bounds;                        ///< of the present frame
-  int overlay_count = 0;                ///< vertices
+  double start_ground = 0;  ///< lowest vertex of the start state [m]
+  double ground = 0;        ///< of the present frame [m]
+  Bounds bounds;            ///< of the present frame
+  int overlay_count = 0;    ///< vertices
 
   SharedVertices vertices;
   MeshPass meshes;
@@ -145,7 +141,7 @@ void Renderer::Parts::upload(const Frame& frame, const Camera& camera, int width
 
   // The bounds of the frame decide where the light looks, and where the floor is.
   bounds = bounds_of(frame.positions, static_cast<std::size_t>(world.cloth_vertices));
-  ground = chosen_ground.value_or(std::min(start_ground, bounds.lowest));
+  ground = std::min(start_ground, bounds.lowest);
 
   // Markers change with the camera, so their triangles are made for every frame.
   const std::vector<OverlayVertex> list = overlay_triangles(world, frame, camera, height);
@@ -292,8 +288,6 @@ void Renderer::set_quality(Quality quality) {
 }
 
 Quality Renderer::quality() const { return parts_->quality; }
-
-void Renderer::set_ground(double height) { parts_->chosen_ground = height; }
 
 std::string Renderer::upload_path() const { return parts_->vertices.path_text(); }
 

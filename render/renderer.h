@@ -22,7 +22,6 @@ enum class ViewMode {
   strain,     ///< faces coloured by the largest principal strain
 };
 
-std::span<const std::string_view> view_mode_names();
 /// Reads the name of a view. Throws InputError that names it and the views that exist.
 ViewMode parse_view_mode(std::string_view name);
 
@@ -57,9 +56,6 @@ class Renderer {
 
   void set_quality(Quality quality);
   Quality quality() const;
-  /// Height of the studio floor [m]; by default the lowest vertex of the start state, or of
-  /// the frame where that is lower.
-  void set_ground(double height);
 
   /// Fills `width` × `height` pixels of a framebuffer (0: the window's) with the finished picture
   /// in sRGB bytes; everything there is overwritten. Blending, depth test and face culling are off
