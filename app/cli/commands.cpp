@@ -33,7 +33,7 @@ int print_keys() {
   return 0;
 }
 
-/// What the parsed verb does; its options live here until then.
+/// The commands of the command line. The options of the chosen command live here until it has run.
 struct Commands {
   CLI::App app{"icloth: interactive cloth simulation", "icloth"};
   std::function<int()> chosen;
@@ -58,6 +58,7 @@ struct Commands {
   void add_tests();
 };
 
+/// Adds a command whose action is run when the whole line has been read.
 CLI::App* Commands::add_verb(const char* name, const char* what, std::function<int()> action) {
   CLI::App* verb = app.add_subcommand(name, what);
   verb->callback([this, action = std::move(action)] { chosen = action; });
@@ -83,7 +84,9 @@ void Commands::add_view() {
     return 3;
 #endif
   });
+
   add_simulation_options(*verb, view_simulation, false);
+
   verb->add_option("--record", view.record_file, "save the session as a recording at the end");
   verb->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
   verb->add_option("--vertices", view.vertices,
@@ -96,7 +99,11 @@ void Commands::add_view() {
 
 void Commands::add_run() {
   CLI::App* verb = add_verb("run", "headless simulation", [this] { return run_run(run); });
+
+  // The length of the run and its scene are common to all commands that simulate.
   add_simulation_options(*verb, run.simulation, true);
+
+  // The remaining options are outputs, inputs, and what to do after a refused step.
   verb->add_option("--out", run.out, "folder of exported frames");
   verb->add_option("--export", run.exports, "format of the frames: obj")
       ->check(CLI::IsMember({"obj"}))
@@ -131,13 +138,17 @@ void Commands::add_render() {
     return 3;
 #endif
   });
+
   add_simulation_options(*verb, render_simulation, true);
+
+  // The picture itself: where it goes, and what it shows how well.
   verb->add_option("--out", render.out, "FILE.png or FILE.mp4")->capture_default_str();
   verb->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
   verb->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
   verb->add_option("--view", render.view, "what is shown")->capture_default_str();
   verb->add_option("--quality", render.quality, "draft, interactive or still")
       ->capture_default_str();
+
   verb->add_option("--vertices", render.vertices,
                    "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
       ->check(CLI::IsMember({"auto", "interop", "host"}))
@@ -168,16 +179,19 @@ void Commands::add_tests() {
                            [this] { return run_ccd(ccd_queries, ccd_predictions); });
   ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
   ccd->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
+
   CLI::App* verb = add_verb("detect", "all collisions between two frames of a mesh",
                             [this] { return run_detect(detect); });
   verb->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
   verb->add_option("T1", detect.end, "the same mesh at the end")->required();
   verb->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");
   verb->add_option("--threads", detect.threads, "threads")->check(CLI::Range(1, 4096));
+
   verb = add_verb("check", "exact self- and inter-mesh intersection test",
                   [this] { return run_check(check); });
   verb->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
   verb->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
+
   CLI::App* info = add_verb("info", "version, machine, builds, renderer",
                             [this] { return list_keys ? print_keys() : run_info(); });
   info->add_flag("--keys", list_keys, "print docs/keys.md: the keys and what the mouse does");
@@ -195,13 +209,15 @@ Commands::Commands() {
   add_tests();
 }
 
-/// `icloth [view] [SCENE]`: puts the verb in where it was left out.
+/// Completes `icloth [view] [SCENE]`: puts the command in where it was left out.
 void complete_verb(std::vector<std::string>& words) {
   if (words.empty()) {
     words = {"view"};
     return;
   }
   const std::string& first = words.front();
+
+  // A name that is no command is a scene. One that looks like neither is probably misspelt.
   if (first == "-h" || first == "--help" || first == "--version") return;
   if (std::ranges::find(kVerbs, first) != std::end(kVerbs)) return;
   const bool word = !first.starts_with("-") && first.find_first_of("./") == std::string::npos;
@@ -219,11 +235,13 @@ int run_words(std::vector<std::string> words) {
 
   Commands commands;
   complete_verb(words);
-  std::ranges::reverse(words);  // as CLI11 wants them
+
+  // CLI11 wants the words in reverse order; --help and --version end here.
+  std::ranges::reverse(words);
   try {
     commands.app.parse(words);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return commands.app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return commands.app.exit(error);
     throw InputError(first_line(error.what()) + " (see icloth --help)");
   }
   return commands.chosen();

@@ -1,4 +1,4 @@
-// The command line: verbs, options, exit codes.
+// The command line: commands, options, exit codes.
 #pragma once
 
 namespace icloth {

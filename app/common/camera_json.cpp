@@ -9,6 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Reads three numbers of reasonable size.
 bool read(const Json& json, const char* key, Vec3d& out) {
   if (!json.contains(key) || !json[key].is_array() || json[key].size() != 3) return false;
   double* parts[] = {&out.x, &out.y, &out.z};
@@ -34,6 +35,7 @@ std::string camera_to_json(const CameraPose& pose) {
 }
 
 std::optional<CameraPose> camera_from_json(const std::string& text) {
+  // Eye and target are required and must differ; the field of view has a default.
   const Json json = Json::parse(text, nullptr, false);
   CameraPose pose;
   if (!json.is_object() || !read(json, "eye", pose.eye) || !read(json, "target", pose.target)) {

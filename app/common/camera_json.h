@@ -9,7 +9,7 @@
 namespace icloth {
 
 std::string camera_to_json(const CameraPose& pose);
-/// Nothing when the text is no camera.
+/// Reads a camera; nothing when the text is none.
 std::optional<CameraPose> camera_from_json(const std::string& text);
 
 }  // namespace icloth

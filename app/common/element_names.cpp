@@ -37,8 +37,9 @@ std::string ElementNames::vertex(Index global) const {
   return object.name + " vertex " + std::to_string(global - object.first_vertex);
 }
 
+/// The vertices of one element, which lie in one object.
 std::string ElementNames::vertices(std::span<const Index> globals) const {
-  const Object& object = at_vertex(globals.front());  // one element lies in one object
+  const Object& object = at_vertex(globals.front());
   std::string text = object.name;
   for (const Index v : globals) text += " " + std::to_string(v - object.first_vertex);
   return text;
@@ -56,6 +57,8 @@ std::string ElementNames::pair(const OffendingPair& pair) const {
 
 bool report_start_intersections(const Scene& scene, bool single_precision) {
   constexpr std::size_t shown = 10;
+
+  // A repair that was asked for tells how much it changed.
   if (scene.repair)
     std::fprintf(
         stderr,
@@ -63,6 +66,8 @@ bool report_start_intersections(const Scene& scene, bool single_precision) {
         "at most %.3g mm\n",
         scene.repair->pairs_before, scene.repair->pairs_left, scene.repair->moved,
         1e3 * scene.repair->largest_move);
+
+  // What is left is listed by name, up to a limit.
   const auto pairs = find_start_intersections(scene, single_precision);
   if (pairs.empty()) return false;
   const ElementNames names(scene);

@@ -1,4 +1,4 @@
-// Names of faces and vertices as users know them: object and number within it.
+// Names of faces and vertices in the user's terms: the object, and the number within it.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ namespace icloth {
 class ElementNames {
  public:
   explicit ElementNames(const Scene& scene);
-  /// Objects with their names ("cloth:shirt"), faces and vertices.
+  /// Adds an object with its name ("cloth:shirt"), vertices and faces.
   void add(std::string name, Index vertices, Index faces);
 
   std::string face(Index global) const;                   ///< "cloth:NAME face 12"
@@ -36,8 +36,8 @@ class ElementNames {
   Index vertices_ = 0, faces_ = 0;
 };
 
-/// Prints the start intersections of a scene to stderr, the first ten by name. True when there
-/// are some: nothing may be simulated then.
+/// Prints the start intersections of a scene to stderr, the first ten by name. Returns true when
+/// there are some; nothing may be simulated then.
 bool report_start_intersections(const Scene& scene, bool single_precision);
 
 }  // namespace icloth

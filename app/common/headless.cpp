@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kShownPairs = 10;
 
+/// Tells why a step was refused, and the first of its offending pairs.
 void print_refusal(const Scene& scene, const StepReport& report) {
   const ElementNames names(scene);
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
@@ -27,7 +28,7 @@ void print_refusal(const Scene& scene, const StepReport& report) {
     std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
 }
 
-/// Input of one step: from the recording where there is one, else from the scene's script.
+/// The input of one step, from the recording where there is one, else from the scene's script.
 Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long step,
                            const Simulator& simulator) {
   if (!job.input)
@@ -36,6 +37,7 @@ Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long s
   return index < job.input->steps.size() ? job.input->steps[index] : Recording::Step{};
 }
 
+/// Applies the changes of parameters that the recording holds.
 void apply_parameters(Simulator& simulator, const Recording::Step& input) {
   if (input.parameters.empty()) return;
   Parameters parameters = simulator.parameters();
@@ -49,6 +51,9 @@ void apply_parameters(Simulator& simulator, const Recording::Step& input) {
 std::size_t count_penetrations(const Simulator& simulator) {
   const Scene& scene = simulator.scene();
   const Snapshot state = simulator.snapshot();
+
+  // The faces of all objects are numbered as the state is; bodies are not tested against each
+  // other.
   std::vector<Triangle> faces;
   std::vector<int> group;
   Index first = 0;
@@ -58,6 +63,7 @@ std::size_t count_penetrations(const Simulator& simulator) {
     group.resize(faces.size(), number);
     first += static_cast<Index>(mesh.positions.size());
   };
+
   for (const Cloth& cloth : scene.cloths) append(cloth.mesh, 0);
   for (const Obstacle& obstacle : scene.obstacles) append(obstacle.mesh, -1);
   return find_intersections(state.positions, faces, group).size();
@@ -65,13 +71,18 @@ std::size_t count_penetrations(const Simulator& simulator) {
 
 HeadlessResult run_headless(const HeadlessJob& job) {
   HeadlessResult result;
+
+  // A start state that intersects is refused.
   result.start_refused = report_start_intersections(*job.scene, job.build != Build::cpu64);
   if (result.start_refused) return result;
+
   const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);
   ScriptedInput script(*job.scene);
   if (job.watch) job.watch(*simulator, nullptr);
 
   Progress progress(job.scene->name, job.steps, job.quiet);
+
+  // Each step takes its input, and its report goes to the statistics and to the caller.
   for (long step = 0; step < job.steps; ++step) {
     const Recording::Step input = next_input(job, script, step, *simulator);
     apply_parameters(*simulator, input);
@@ -79,6 +90,8 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     if (job.record) job.record->steps.push_back(input);
     result.statistics.add(report);
     if (job.watch) job.watch(*simulator, &report);
+
+    // A refused step is reported at once; the run may go on after it.
     if (!report.accepted) {
       progress.finish();
       print_refusal(*job.scene, report);
@@ -89,6 +102,7 @@ HeadlessResult run_headless(const HeadlessJob& job) {
   }
   progress.finish();
 
+  // The final state is checked exactly, and named by its hash.
   const ComputeDevice device = compute_device(job.build);
   result.statistics.set_device(device.name, device.copy_bandwidth);
   result.penetrations = count_penetrations(*simulator);

@@ -1,4 +1,4 @@
-// Stepping a scene without a window: what run, replay, render and bench share.
+// Stepping a scene without a window, as run, replay, render and bench do it.
 #pragma once
 
 #include <functional>

@@ -53,12 +53,15 @@ double peak_memory_bytes() {
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 double measure_memory_bandwidth() {
+  // Three arrays that exceed every cache are added up in blocks.
   constexpr std::size_t count = std::size_t{1} << 24;  // 128 MiB an array
   constexpr std::size_t block = std::size_t{1} << 16;
   const auto a = std::make_unique_for_overwrite<double[]>(count);
   const auto b = std::make_unique<double[]>(count), c = std::make_unique<double[]>(count);
+
+  // The first of the runs brings in the pages.
   double best = 0;
-  for (int run = 0; run < 6; ++run) {  // the first one brings in the pages
+  for (int run = 0; run < 6; ++run) {
     const auto start = std::chrono::steady_clock::now();
     parallel_for(Index{count / block}, 2, 1, [&](Index first, Index last) {
       for (std::size_t i = block * static_cast<std::size_t>(first);
@@ -75,6 +78,8 @@ ComputeDevice compute_device(Build build) {
   if (build != Build::cuda32 || !build_available(build)) return {};
   ComputeDevice device;
   device.name = cuda_device_name(cuda_device());
+
+  // A device whose memory is full still computes, so its bandwidth stays unknown.
   try {
     device.copy_bandwidth = measure_copy_bandwidth(cuda_device());
   } catch (const std::runtime_error&) {

@@ -1,4 +1,4 @@
-// What results have to name: program, machine, memory.
+// The facts that results have to name: program, machine, memory.
 #pragma once
 
 #include <string>
@@ -20,13 +20,13 @@ void reset_peak_memory();       ///< a new measurement starts; does nothing wher
 /// few runs over arrays that exceed the caches. Takes about half a second.
 double measure_memory_bandwidth();
 
-/// Device that a build computes on, where that is not the processor.
+/// The device that a build computes on, where that is not the processor.
 struct ComputeDevice {
   std::string name;           ///< as the driver names it; empty: the processor
   double copy_bandwidth = 0;  ///< [bytes/s] read and written, as measure_copy_bandwidth; 0: unknown
 };
 
-/// Of the device that `build` uses now; measures, which takes some hundredths of a second.
+/// The device that `build` uses now. It is measured, which takes some hundredths of a second.
 ComputeDevice compute_device(Build build);
 
 }  // namespace icloth

@@ -11,7 +11,7 @@ namespace {
 
 constexpr long kMostSteps = 100'000'000;
 
-/// In single quotes where a shell would otherwise change the word.
+/// The word in single quotes where a shell would otherwise change it.
 std::string quoted(const std::string& word) {
   static constexpr char kPlain[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./=:,+-";
@@ -47,12 +47,16 @@ std::vector<std::string> scene_overrides(const SimulationOptions& options) {
 }
 
 Build choose_build(const SimulationOptions& options) {
+  // Double precision is there on the CPU only.
   const bool cuda = options.device.starts_with("cuda");
   if (options.precision == "f64") {
     if (cuda) throw InputError("--precision f64: expected --device cpu with it");
     return Build::cpu64;
   }
+
   if (options.device == "cpu") return Build::cpu32;
+
+  // A numbered device has to work; without a number the first usable one is taken.
   std::string reason;
   if (options.device.starts_with("cuda:")) {
     set_cuda_device(std::atoi(options.device.c_str() + 5));
@@ -60,6 +64,8 @@ Build choose_build(const SimulationOptions& options) {
   } else if (choose_first_cuda_device(reason)) {
     return Build::cuda32;
   }
+
+  // Only a device that was asked for is missed.
   if (cuda) throw DeviceError("--device " + options.device + ": " + reason);
   return Build::cpu32;
 }

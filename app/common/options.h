@@ -1,4 +1,4 @@
-// Options that every simulating verb has.
+// Options that every simulating command has.
 #pragma once
 
 #include <string>
@@ -25,17 +25,18 @@ struct SimulationOptions {
 /// What the options change of the scene, for load_scene: the preset first, then each --set.
 std::vector<std::string> scene_overrides(const SimulationOptions& options);
 
-/// Build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA
+/// The build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA
 /// device that can be used, `cuda:N` that one; it becomes the one of Build::cuda32
 /// (set_cuda_device). Throws InputError (cuda with f64), DeviceError when a CUDA device was asked
 /// for and none can be used.
 Build choose_build(const SimulationOptions& options);
 
-/// Steps that --steps, --time or the scene's duration ask for, at the scene's time step.
+/// The number of steps that --steps, --time or the scene's duration ask for, at the scene's time
+/// step.
 long step_count(const SimulationOptions& options, const Scene& scene);
 
-/// The options as they would be typed, without the verb: "scarf --device cpu --set mu=500".
-/// `build` replaces --device and --precision, so that the command repeats on other machines.
+/// The options as they would be typed, without the command: "scarf --device cpu --set mu=500".
+/// `build` replaces --device and --precision, so that the line repeats on other machines.
 std::string command_arguments(const SimulationOptions& options, Build build);
 
 }  // namespace icloth

@@ -26,9 +26,12 @@ Progress::Progress(std::string what, long total, bool quiet)
 
 void Progress::update(long done) {
   if (!enabled_ || done <= 0 || done >= total_) return;
+
+  // Short runs show nothing, and the line changes five times a second at most.
   const Clock::time_point now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double total = elapsed * static_cast<double>(total_) / static_cast<double>(done);
+
   if (total < 2.0 || std::chrono::duration<double>(now - last_).count() < 0.2) return;
   last_ = now;
   shown_ = true;

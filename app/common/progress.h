@@ -1,4 +1,4 @@
-// One line on the terminal that says how far a run is.
+// One line on the terminal that tells how far a run is.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace icloth {
 
-/// Shown on stderr when that is a terminal, from the second second on; erased at the end.
+/// A line on stderr when that is a terminal, from the second second on; it is erased at the end.
 class Progress {
  public:
   Progress(std::string what, long total, bool quiet);

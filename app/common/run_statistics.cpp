@@ -78,6 +78,7 @@ double RunStatistics::steps_per_second() const {
 }
 
 std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_hash) const {
+  // Times first, then counts, each with median, mean and largest value.
   std::string text = formatted("%-22s %12s %12s %12s\n", "a step", "median", "mean", "largest");
   for (const char* name : {"ms_total", "ms_proximity", "ms_implicit", "ms_broad_phase", "ms_ccd",
                            "ms_impact_zones", "ms_other"})
@@ -87,10 +88,14 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
                            "impacts_first", "rounds", "zones", "cg_iterations"})
     text +=
         formatted("%-22s %12.0f %12.1f %12.0f\n", name, median(name), mean(name), largest(name));
+
+  // The run as a whole.
   text += formatted("%-22s %12zu\n", "steps", steps());
   text += formatted("%-22s %12.2f\n", "steps/s (median)", steps_per_second());
   text += formatted("%-22s %12.0f\n", "impacts resolved", sum("impacts_first"));
   text += formatted("%-22s %12.0f   retries %.0f\n", "substeps", sum("substeps"), sum("retries"));
+
+  // The machine and the outcome.
   if (!device_.empty())
     text += formatted("%-22s %12.1f GB/s %s\n", "device", copy_bandwidth_ / 1e9, device_.c_str());
   text += formatted("%-22s %12.1f MB\n", "peak memory", peak_memory_bytes() / 1e6);
@@ -101,6 +106,8 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
 
 StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) return;
+
+  // A path that cannot work is refused before the run.
   const std::filesystem::path file(path_);
   const bool json = file.extension() == ".json";
   if (!json && file.extension() != ".csv")
@@ -108,6 +115,8 @@ StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
   if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
     throw InputError("--stats " + path_ + ": there is no folder '" + file.parent_path().string() +
                      "'");
+
+  // CSV is opened now and gets its head; JSON is written at the end.
   if (json) return;
   csv_.open(path_);
   for (const ReportColumn& column : report_columns())
@@ -120,18 +129,25 @@ void StatisticsFile::add(const StepReport& report) {
   if (!csv_.is_open()) return;
   for (const ReportColumn& column : report_columns())
     csv_ << (&column == report_columns().data() ? "" : ",") << report_value(report, column);
-  csv_ << '\n' << std::flush;  // a crash loses no row
+
+  // Every row reaches the file at once, so that a crash loses none.
+  csv_ << '\n' << std::flush;
 }
 
 void StatisticsFile::finish(const RunStatistics& statistics) {
+  // CSV has been written already and only has to be complete.
   if (csv_.is_open() && !csv_) throw InputError("--stats " + path_ + ": cannot be written");
   if (path_.empty() || csv_.is_open()) return;
+
+  // JSON is a list of objects, one a step.
   std::string text = "[";
   for (const StepReport& report : statistics.reports()) {
     text += text.size() > 1 ? ",\n {" : "\n {";
     for (const ReportColumn& column : report_columns()) {
       const bool hash = std::holds_alternative<std::uint64_t StepReport::*>(column.member);
-      const std::string quote = hash ? "\"" : "";  // 64 bits do not fit a JSON number everywhere
+
+      // Hashes are text, as 64 bits do not fit into a JSON number everywhere.
+      const std::string quote = hash ? "\"" : "";
       text += (text.back() == '{' ? "\"" : ", \"") + std::string(column.name) + "\": " + quote +
               report_value(report, column) + quote;
     }

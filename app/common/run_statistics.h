@@ -14,7 +14,8 @@ namespace icloth {
 class RunStatistics {
  public:
   void add(const StepReport& report);
-  /// Device that computed the steps, and its bandwidth [bytes/s]; left out for the processor.
+  /// Names the device that computed the steps, and its bandwidth [bytes/s]. It is not called for
+  /// the processor.
   void set_device(std::string name, double copy_bandwidth);
 
   std::size_t steps() const { return reports_.size(); }
@@ -23,14 +24,14 @@ class RunStatistics {
   double mean(std::string_view column) const;
   double largest(std::string_view column) const;
   double sum(std::string_view column) const;
-  /// Of the median step; 0 without steps.
+  /// Steps a second of the median step; 0 without steps.
   double steps_per_second() const;
 
-  /// ', "device": …, "copy_bandwidth": …' for a JSON object; empty for the processor.
+  /// The text ', "device": …, "copy_bandwidth": …' for a JSON object; empty for the processor.
   std::string device_json() const;
 
-  /// What is printed at the end of a run. `penetrations`: pairs of faces that intersect in the
-  /// final state; `state_hash`: of that state.
+  /// The table that is printed at the end of a run. `penetrations` is the number of pairs of faces
+  /// that intersect in the final state, `state_hash` that state's hash.
   std::string table(std::size_t penetrations, std::uint64_t state_hash) const;
 
  private:
@@ -41,11 +42,11 @@ class RunStatistics {
   double copy_bandwidth_ = 0;
 };
 
-/// File of --stats: CSV is written as the run goes, JSON at the end.
+/// The file of --stats. CSV is written as the run goes, JSON at the end.
 class StatisticsFile {
  public:
-  /// `path` ends in .csv or .json; empty: nothing is written. Throws InputError, also when the
-  /// place cannot be written.
+  /// Opens the file. `path` ends in .csv or .json; empty means that nothing is written. Throws
+  /// InputError, also when the place cannot be written.
   explicit StatisticsFile(std::string path);
   void add(const StepReport& report);
   void finish(const RunStatistics& statistics);

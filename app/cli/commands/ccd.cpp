@@ -18,7 +18,7 @@ double nanoseconds(Clock::duration d) {
   return std::chrono::duration<double, std::nano>(d).count();
 }
 
-/// What reading the clock twice costs.
+/// The time that reading the clock twice takes [ns].
 double clock_cost() {
   double least = 1e9;
   for (int i = 0; i < 1000; ++i) {
@@ -28,7 +28,7 @@ double clock_cost() {
   return least;
 }
 
-/// Times of many queries in bounded memory: bins of 1 ns, exact sum and maximum.
+/// Times of many queries in bounded memory: bins of 1 ns, and exact sum and maximum.
 class TimeStatistics {
  public:
   void add(double ns) {
@@ -45,6 +45,7 @@ class TimeStatistics {
 
  private:
   static constexpr std::size_t kBins = 1 << 17;
+  /// The bin at which half of the times are reached.
   std::size_t median() const {
     long below = 0;
     std::size_t bin = 0;
@@ -56,6 +57,7 @@ class TimeStatistics {
   double sum_ = 0, maximum_ = 0;
 };
 
+/// The counts and times of all queries.
 struct Tally {
   long queries = 0, vf = 0, hits = 0, expected = 0, false_negatives = 0, false_positives = 0;
   TimeStatistics hit_times, miss_times, times;
@@ -80,6 +82,7 @@ bool timed_test(const FileQuery& q, double overhead, CcdHit& hit, Tally& tally) 
   return is_hit;
 }
 
+/// Counts the query, and compares the answer with the expected one where there is one.
 void count(const FileQuery& q, bool is_hit, Tally& tally) {
   ++tally.queries;
   tally.vf += q.kind == PairKind::vf;
@@ -109,12 +112,15 @@ struct CloseFile {
 }  // namespace
 
 int run_ccd(const std::string& file, const std::string& prediction_file) {
+  // A prediction file that cannot be written is refused before the long part.
   QueryFile queries(file);
   std::unique_ptr<std::FILE, CloseFile> predictions;
   if (!prediction_file.empty()) {
     predictions.reset(std::fopen(prediction_file.c_str(), "w"));
     if (!predictions) throw InputError(prediction_file + ": cannot be written");
   }
+
+  // The queries are read one by one, so that files of any size fit into memory.
   const double overhead = clock_cost();
   Tally tally;
   FileQuery q;
@@ -122,6 +128,8 @@ int run_ccd(const std::string& file, const std::string& prediction_file) {
   while (queries.next(q)) {
     const bool is_hit = timed_test(q, overhead, hit, tally);
     count(q, is_hit, tally);
+
+    // The line of the query in the prediction file.
     if (!predictions) continue;
     if (is_hit) {
       std::fprintf(predictions.get(), "1 %.17g\n", hit.toi);
@@ -129,6 +137,8 @@ int run_ccd(const std::string& file, const std::string& prediction_file) {
       std::fputs("0\n", predictions.get());
     }
   }
+
+  // A full disk may only show now.
   if (predictions && (std::fflush(predictions.get()) != 0 || std::ferror(predictions.get()))) {
     throw InputError(prediction_file + ": cannot be written to the end; is the disk full?");
   }

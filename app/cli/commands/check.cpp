@@ -11,24 +11,31 @@
 namespace icloth {
 namespace {
 
-/// All files in one list of vertices and faces.
+/// All files in one list of vertices and faces, numbered on from file to file.
 struct Soup {
   std::vector<Vec3d> positions;
   std::vector<Triangle> faces;
   std::vector<int> group;  // −1: obstacle
   ElementNames names{Scene{}};
 
+  /// Adds a file. With several files its path is part of the names.
   void add(const std::string& path, bool several) {
     const MeshFile file = read_mesh(path);
     const auto first = static_cast<Index>(positions.size());
+
     const auto& mesh = file.mesh;
+
+    // Indices are 32 bits, and the sum of all files must fit.
     if (positions.size() + mesh.positions.size() > (1u << 30) ||
         faces.size() + mesh.faces.size() > (1u << 30))
       throw InputError(path + ": expected at most 2^30 vertices and faces together");
+
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const Triangle& t : mesh.faces)
       faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-    auto vertices = static_cast<Index>(mesh.positions.size());  // counted with the first group
+
+    // Each group is named by itself; vertices are counted with the first group of the file.
+    auto vertices = static_cast<Index>(mesh.positions.size());
     for (const MeshGroup& part : file.groups) {
       const std::string prefix = several || part.name.empty() ? path : "";
       const std::string colon = prefix.empty() || part.name.empty() ? "" : ":";
@@ -38,6 +45,7 @@ struct Soup {
     }
   }
 
+  /// Degenerate faces, which the exact test passes over.
   std::size_t faces_without_area() const {
     return static_cast<std::size_t>(std::ranges::count_if(faces, [&](const Triangle& t) {
       const auto x = [&](std::size_t k) { return positions[static_cast<std::size_t>(t[k])]; };

@@ -12,6 +12,7 @@
 namespace icloth {
 namespace {
 
+/// Refuses frames of different meshes, and names the first difference.
 void check_same_topology(const DetectOptions& options, const TriangleMesh& a,
                          const TriangleMesh& b) {
   if (a.positions.size() != b.positions.size())
@@ -27,6 +28,7 @@ void check_same_topology(const DetectOptions& options, const TriangleMesh& a,
                        " has other vertices, expected those of " + options.start);
 }
 
+/// Adds a line of comma-separated numbers.
 void append(std::string& text, std::initializer_list<Index> numbers) {
   char separator = 0;
   for (const Index n : numbers) {
@@ -37,9 +39,11 @@ void append(std::string& text, std::initializer_list<Index> numbers) {
   text += '\n';
 }
 
+/// Writes the two lists of pairs.
 void write_csv(const std::string& prefix, const Collisions& found,
                std::span<const Triangle> faces) {
   std::string text = "vertex,face,f0,f1,f2\n";
+
   for (const auto& [v, f] : found.vertex_face) {
     const Triangle& t = faces[static_cast<std::size_t>(f)];
     append(text, {v, f, t[0], t[1], t[2]});
@@ -53,12 +57,15 @@ void write_csv(const std::string& prefix, const Collisions& found,
 }  // namespace
 
 int run_detect(const DetectOptions& options) {
+  // Reading counts apart from the detection, as files may take longer.
   const auto clock = std::chrono::steady_clock::now();
   set_thread_count(options.threads);
   const MeshFile start = read_mesh(options.start), end = read_mesh(options.end);
   check_same_topology(options, start.mesh, end.mesh);
   const double ms_read =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - clock).count();
+
+  // Detection itself prints the times of its two stages.
   const Collisions found =
       cpu64::detect_collisions(start.mesh.positions, end.mesh.positions, start.mesh.faces);
   if (!options.csv.empty()) write_csv(options.csv, found, start.mesh.faces);

@@ -17,6 +17,7 @@
 namespace icloth {
 namespace {
 
+/// Prints one CUDA device, whether it can be used or not.
 void print_device(const CudaDevice& device) {
   const std::string name = "cuda:" + std::to_string(device.ordinal);
   std::printf("%-13s %s, compute capability %s, %d SMs, L2 %.1f MB, ", name.c_str(),
@@ -27,6 +28,8 @@ void print_device(const CudaDevice& device) {
                 device.problem.c_str());
     return;
   }
+
+  // The bandwidth is measured. The device's memory may be full; the rest is still worth knowing.
   double bandwidth = 0;
   try {
     bandwidth = measure_copy_bandwidth(device.ordinal);
@@ -51,20 +54,26 @@ void print_cuda() {
 }  // namespace
 
 int run_info() {
+  // The program and the machine come first, as every report of a problem needs them.
   std::printf("icloth        %s (%s)\n", program_version().c_str(), program_commit().c_str());
   std::printf("compiler      %s\n", compiler_name().c_str());
   std::printf("processor     %s, %d threads\n", processor_name().c_str(), processor_threads());
   std::printf("memory        %.1f GB, %.1f GB/s\n", memory_bytes() / 1e9,
               measure_memory_bandwidth() / 1e9);
   std::printf("assets        %s\n", assets_folder().c_str());
-  choose_build({});  // the first usable CUDA device is the one that cuda32 means
+
+  // The first usable CUDA device is the one that cuda32 stands for.
+  choose_build({});
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32}) {
     std::string reason;
     const bool available = build_available(build, &reason);
     std::printf("%-13s %s\n", std::string(build_name(build)).c_str(),
                 available ? "available" : ("not available: " + reason).c_str());
   }
+
   print_cuda();
+
+// The window and the renderer may have been left out when the program was built.
 #if defined(ICLOTH_HAS_WINDOW)
   std::printf("window        built in\n");
 #else

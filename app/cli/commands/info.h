@@ -1,4 +1,4 @@
-// icloth info: what this program and this machine can do.
+// icloth info: the abilities of this program and this machine.
 #pragma once
 
 namespace icloth {

@@ -31,13 +31,14 @@ std::string_view take_field(std::string_view& line) {
   return trimmed(field);
 }
 
+/// The field in quotes, cut after 40 characters.
 std::string quoted(std::string_view field) {
   std::string out(1, '\'');
   out.append(field.substr(0, 40));
   return out.append(field.size() > 40 ? "…'" : "'");
 }
 
-/// What column 0 … 23 holds, as a user would say it.
+/// The content of column 0 … 23 in the user's words.
 std::string column_name(int column) {
   const std::string axis(1, "xyz"[column % 3]);
   return axis + " of point " + std::to_string(column / 3 % 4) +
@@ -47,7 +48,7 @@ std::string column_name(int column) {
 }  // namespace
 
 #if defined(ICLOTH_HAS_ZLIB)
-// zlib hands plain files through unchanged.
+// The bytes of a file, which zlib passes on unchanged where the file is plain.
 struct QueryFile::Bytes {
   gzFile file;
   explicit Bytes(const std::string& path) : file(gzopen(path.c_str(), "rb")) {}
@@ -57,7 +58,9 @@ struct QueryFile::Bytes {
   long read(char* out, std::size_t size) const {
     const int count = gzread(file, out, static_cast<unsigned>(size));
     int status = Z_OK;
-    gzerror(file, &status);  // a file that was cut off is only reported here
+
+    // A file that was cut off is only reported here.
+    gzerror(file, &status);
     return status < 0 ? -1 : count;
   }
 };
@@ -89,10 +92,12 @@ QueryFile::QueryFile(const std::string& path) : path_(path) {
 
 QueryFile::~QueryFile() = default;
 
+/// Throws InputError with the place in the file.
 void QueryFile::refuse(const std::string& what) const {
   throw InputError(path_ + ":" + std::to_string(line_number_) + ": " + what);
 }
 
+/// Reads another chunk behind the part that was not used yet. False at the end of the file.
 bool QueryFile::fill() {
   buffer_.erase(0, begin_);
   begin_ = 0;
@@ -108,6 +113,7 @@ bool QueryFile::fill() {
 }
 
 bool QueryFile::next_line(std::string_view& line) {
+  // The search goes on where it ended before the last chunk came, so that every byte is seen once.
   std::size_t searched = 0;
   for (;;) {
     const std::size_t end = buffer_.find('\n', begin_ + searched);
@@ -116,6 +122,8 @@ bool QueryFile::next_line(std::string_view& line) {
       begin_ = end + 1;
       break;
     }
+
+    // The last line may have no end, and a line must not fill the memory.
     searched = buffer_.size() - begin_;
     if (searched > kMaxLine || !fill()) {
       line = std::string_view(buffer_).substr(begin_);
@@ -124,21 +132,26 @@ bool QueryFile::next_line(std::string_view& line) {
       break;
     }
   }
+
   ++line_number_;
   if (line.size() > kMaxLine) refuse("line of more than 65536 characters; expected one query");
   return true;
 }
 
 double QueryFile::number(std::string_view field, int column) const {
+  // std::from_chars knows no plus sign and no 0x, so both are taken off first.
   std::string_view digits = field;
   const bool negative = digits.starts_with('-');
   if (negative || digits.starts_with('+')) digits.remove_prefix(1);
   const bool hexadecimal = digits.starts_with("0x") || digits.starts_with("0X");
   if (hexadecimal) digits.remove_prefix(2);
+
   double value = 0;
   const char* end = digits.data() + digits.size();
   const auto result = std::from_chars(
       digits.data(), end, value, hexadecimal ? std::chars_format::hex : std::chars_format::general);
+
+  // The whole field has to be one finite number, with one sign at most.
   const bool doubled_sign = digits.starts_with('-');
   if (result.ec != std::errc{} || result.ptr != end || doubled_sign || !std::isfinite(value)) {
     refuse(column_name(column) + " is " + quoted(field) + ", expected a finite number");
@@ -147,6 +160,7 @@ double QueryFile::number(std::string_view field, int column) const {
 }
 
 bool QueryFile::next(FileQuery& out) {
+  // Empty lines, and a header in the first line, are passed over.
   std::string_view line;
   bool is_query = false;
   while (!is_query) {
@@ -154,15 +168,20 @@ bool QueryFile::next(FileQuery& out) {
     const bool header = line_number_ == 1 && !line.starts_with("vf") && !line.starts_with("ee");
     is_query = !header && !trimmed(line).empty();
   }
+
   const std::string_view kind = take_field(line);
   if (kind != "vf" && kind != "ee") refuse("kind is " + quoted(kind) + ", expected vf or ee");
   out.kind = kind == "vf" ? PairKind::vf : PairKind::ee;
+
+  // The 24 coordinates stand in the order point by point, first at t = 0 and then at t = 1.
   for (int i = 0; i < 24; ++i) {
     if (line.empty()) refuse(column_name(i) + " is missing, expected 24 numbers after the kind");
     const double value = number(take_field(line), i);
     Vec3d& point = i < 12 ? out.query.p0[i / 3] : out.query.p1[i / 3 - 4];
     (i % 3 == 0 ? point.x : i % 3 == 1 ? point.y : point.z) = value;
   }
+
+  // The expected result is optional.
   const std::string_view expected = take_field(line);
   if (expected != "" && expected != "0" && expected != "1") {
     refuse("expected result is " + quoted(expected) + ", expected 0 or 1");

@@ -1,9 +1,9 @@
 // Files of elementary collision queries, read as a stream.
 //
-// CSV, plain or gzip (where zlib was there at build time). Columns: kind `vf` or `ee`; 24 numbers,
-// decimal or C99 hexadecimal, x y z of four points at t = 0 and then at t = 1 (vf: vertex, face v0
-// v1 v2; ee: a0 a1 b0 b1); optionally the expected result 0 or 1; further columns are not read.
-// The first line may be a header; empty lines are passed over.
+// The files are CSV, plain or gzip (where zlib was there at build time). The columns are the kind,
+// `vf` or `ee`; 24 numbers, decimal or C99 hexadecimal, which are x y z of four points at t = 0 and
+// then at t = 1 (vf: vertex, face v0 v1 v2; ee: a0 a1 b0 b1); and optionally the expected result, 0
+// or 1. Further columns are not read. The first line may be a header; empty lines are passed over.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,15 @@ struct FileQuery {
   int expected = -1;  ///< 0, 1, or -1 when the file does not say
 };
 
+/// Reads queries from a file, one after the other.
 class QueryFile {
  public:
-  /// Throws InputError when the file cannot be opened or is gzip and this build has no zlib.
+  /// Opens the file. Throws InputError when it cannot be opened or is gzip and this build has no
+  /// zlib.
   explicit QueryFile(const std::string& path);
   ~QueryFile();
 
-  /// The next query; false at the end. Throws InputError naming line, column and value.
+  /// Reads the next query; false at the end. Throws InputError naming line, column and value.
   bool next(FileQuery& out);
 
  private:

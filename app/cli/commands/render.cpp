@@ -24,13 +24,14 @@ struct Size {
   int width = 0, height = 0;
 };
 
-/// "WIDTHxHEIGHT", each 16 … 16384 pixels.
+/// Reads "WIDTHxHEIGHT", each from 16 to 16384 pixels.
 Size parse_size(const std::string& text) {
   Size size;
   const char* end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, size.width);
   const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
   const auto height = cross ? std::from_chars(width.ptr + 1, end, size.height) : width;
+
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 16384; };
   if (!cross || height.ec != std::errc() || height.ptr != end || !fits(size.width) ||
       !fits(size.height)) {
@@ -46,8 +47,8 @@ Quality parse_quality(const std::string& name) {
   throw InputError("--quality " + name + ": expected draft, interactive or still");
 }
 
-/// How vertices are asked to reach the GPU. Throws DeviceError when interop is demanded and cannot
-/// be had; needs a current context.
+/// The path by which vertices shall reach the GPU. Throws DeviceError when interop is demanded and
+/// cannot be had; needs a current context.
 VertexOptions choose_vertices(const RenderOptions& options) {
   if (options.vertices == "host") return {.on_device = false};
   if (options.vertices == "auto") return {};
@@ -68,6 +69,7 @@ void check_out(const std::string& out) {
     throw InputError("--out " + out + ": there is no folder '" + path.parent_path().string() + "'");
 }
 
+/// Reads a camera from a JSON file.
 Camera camera_from_file(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError("--camera " + path + ": cannot be read, expected a JSON file");
@@ -82,7 +84,7 @@ Camera camera_from_file(const std::string& path) {
   return Camera(*pose);
 }
 
-/// The whole start state from the front, slightly from above.
+/// A camera that sees the whole start state from the front, slightly from above.
 Camera camera_on_everything(const World& world, double aspect) {
   Camera camera(CameraPose{"", {0.25, 0.22, 1}, {0, 0, 0}, {0, 1, 0}, 32});
   Vec3d low = world.position.front(), high = low;
@@ -94,6 +96,7 @@ Camera camera_on_everything(const World& world, double aspect) {
   return camera;
 }
 
+/// The camera that was asked for, else the first of the scene, else one that sees everything.
 Camera choose_camera(const RenderOptions& options, const Scene& scene, const World& world,
                      double aspect) {
   if (options.camera.ends_with(".json")) return camera_from_file(options.camera);
@@ -107,9 +110,10 @@ Camera choose_camera(const RenderOptions& options, const Scene& scene, const Wor
                    (names.empty() ? "FILE.json" : names + " or FILE.json"));
 }
 
-/// Faces that a refused step could not bring apart: both elements of every pair, seen as the faces
-/// that hold a whole element.
+/// The faces that a refused step could not bring apart. Both elements of every pair are shown by
+/// the faces that hold the whole element.
 std::vector<Index> offending_faces(const World& world, const StepReport& report) {
+  // Each pair gives two elements, as lists of vertices.
   std::vector<std::vector<Index>> elements;
   for (const OffendingPair& pair : report.offending) {
     const auto& v = pair.vertices;
@@ -117,6 +121,8 @@ std::vector<Index> offending_faces(const World& world, const StepReport& report)
     elements.emplace_back(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(split));
     elements.emplace_back(v.begin() + static_cast<std::ptrdiff_t>(split), v.end());
   }
+
+  // A face is marked if it holds all vertices of one of them.
   std::vector<Index> faces;
   for (Index f = 0; f < world.faces && !elements.empty(); ++f) {
     const Triangle& t = world.face[static_cast<std::size_t>(f)];
@@ -129,7 +135,7 @@ std::vector<Index> offending_faces(const World& world, const StepReport& report)
   return faces;
 }
 
-/// What the picture shows: the last state that was reached.
+/// The content of the picture: the last state that was reached.
 struct Shown {
   std::vector<Vec3f> positions;
   std::unique_ptr<DevicePositions> on_device;  ///< the same on the solver's device, if it has one
@@ -137,6 +143,7 @@ struct Shown {
   std::vector<Index> marked_faces;
 };
 
+/// Marks the faces that intersect in a start state that cannot be simulated.
 void mark_start_intersections(const Scene& scene, bool single_precision, const World& world,
                               Shown& shown) {
   for (const Vec3d p : world.position) shown.positions.push_back(convert<float>(p));
@@ -149,21 +156,24 @@ void mark_start_intersections(const Scene& scene, bool single_precision, const W
 }  // namespace
 
 int run_render(const RenderOptions& options) {
+  // Options are checked before anything takes time.
   const Size size = parse_size(options.size);
   const ViewMode view = parse_view_mode(options.view);
   const Quality quality = parse_quality(options.quality);
   check_out(options.out);
 
+  // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
   job.scene = load_scene(options.scene, options.overrides);
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);
-  const std::unique_ptr<GlContext> context =  // before the long part
+  const std::unique_ptr<GlContext> context =
       make_egl_context(options.build == Build::cuda32 ? cuda_device() : kNone);
   Renderer renderer(world, choose_vertices(options));
   renderer.set_quality(quality);
 
+  // The length, the device and the outputs of the run.
   SimulationOptions length;
   length.steps = options.steps;
   length.time = options.time;
@@ -172,6 +182,8 @@ int run_render(const RenderOptions& options) {
   job.quiet = options.quiet;
   set_thread_count(options.threads);
   StatisticsFile stats(options.stats_file);
+
+  // The last accepted state is kept for the picture; a refused one adds its offending faces.
   Shown shown;
   job.watch = [&](const Simulator& simulator, const StepReport* report) {
     if (report) stats.add(*report);
@@ -181,11 +193,13 @@ int run_render(const RenderOptions& options) {
     simulator.positions(shown.positions);
     shown.handles = simulator.handles();
   };
+
   const HeadlessResult result = run_headless(job);
   stats.finish(result.statistics);
   if (result.start_refused)
     mark_start_intersections(*job.scene, options.build != Build::cpu64, world, shown);
 
+  // The picture shows that state.
   Frame frame;
   frame.positions = shown.positions;
   frame.on_device = shown.on_device.get();
@@ -193,9 +207,12 @@ int run_render(const RenderOptions& options) {
   frame.marked_faces = shown.marked_faces;
   frame.view = view;
   const Image image = renderer.picture(frame, camera, size.width, size.height);
+
+  // Where interop was demanded, a picture without it is no success.
   if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
     throw DeviceError("--vertices interop: " + renderer.upload_path());
   write_png(options.out, image);
+
   if (!options.quiet && !result.start_refused) {
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
     std::printf("vertices by %s\n", renderer.upload_path().c_str());

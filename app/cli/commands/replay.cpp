@@ -10,20 +10,26 @@
 namespace icloth {
 
 int run_replay(const ReplayOptions& options) {
+  // The recording says which scene to run, on which build.
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
   job.scene = load_scene(recording.scene, recording.overrides);
+
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
     if (build_name(build) == recording.build) job.build = build;
+
+  // Another device may be asked for; the precision stays that of the recording.
   if (!options.device.empty() || job.build == Build::cuda32) {
     SimulationOptions where;
     where.device = options.device.empty() ? "cuda" : options.device;
     if (job.build == Build::cpu64) where.precision = "f64";
     job.build = choose_build(where);
   }
+
+  // The recorded hands met the same refusals, so the run goes on after them.
   job.steps = static_cast<long>(recording.steps.size());
   job.input = &recording;
-  job.stop_on_failure = false;  // the recorded hands saw the same refusals
+  job.stop_on_failure = false;
   job.quiet = options.quiet;
 
   set_thread_count(options.threads);
@@ -31,11 +37,14 @@ int run_replay(const ReplayOptions& options) {
   job.watch = [&](const Simulator&, const StepReport* report) {
     if (report) stats.add(*report);
   };
+
   const HeadlessResult result = run_headless(job);
   if (result.start_refused) return 1;
   stats.finish(result.statistics);
   if (!options.quiet)
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+
+  // Equal input gives equal bits, so any other final state is a failure.
   if (result.state_hash != recording.final_hash) {
     std::fprintf(stderr,
                  "icloth: %s: final state %016" PRIx64 ", recorded was %016" PRIx64 " (%s)\n",

@@ -1,4 +1,4 @@
-// icloth replay: recorded input again, and the state at the end compared.
+// icloth replay: runs recorded input again and compares the state at the end.
 #pragma once
 
 #include <string>

@@ -46,6 +46,7 @@ class FrameExport {
   long every_ = 1, steps_ = 0, frame_ = 0;
 };
 
+/// Refuses outputs that cannot work before anything takes time.
 void check(const RunOptions& options) {
   if (!options.exports.empty() && options.out.empty())
     throw InputError("--export " + options.exports.front() + ": expected --out DIR with it");
@@ -55,21 +56,25 @@ void check(const RunOptions& options) {
                      record.parent_path().string() + "'");
 }
 
+/// The command that repeats a run up to a failed step.
 std::string repeat_command(const RunOptions& options, Build build, std::int64_t steps) {
   std::string text = "icloth run " + command_arguments(options.simulation, build);
   if (!options.input_file.empty()) text += " --input " + options.input_file;
   return text + " --steps " + std::to_string(steps);
 }
 
-/// The primitives by falling time, and how fast the linear solver moves its data.
+/// Prints the primitives by falling time, and the bandwidth of the linear solver.
 void print_profile(const RunStatistics& statistics) {
   std::vector<ProfileRow> rows = profile_rows();
   std::sort(rows.begin(), rows.end(),
             [](const ProfileRow& a, const ProfileRow& b) { return a.ms > b.ms; });
+
+  // The bytes that the solver moved at least, over all steps.
   double solver_bytes = 0;
   for (const StepReport& report : statistics.reports()) solver_bytes += report.cg_bytes;
   const double steps = std::max<double>(1, static_cast<double>(statistics.steps()));
   std::printf("%-32s %12s %12s\n", "primitive", "calls/step", "ms/step");
+
   for (const ProfileRow& row : rows) {
     std::printf("%-32s %12.1f %12.4f\n", row.name.c_str(), static_cast<double>(row.calls) / steps,
                 row.ms / steps);
@@ -82,6 +87,7 @@ void print_profile(const RunStatistics& statistics) {
 
 int run_run(const RunOptions& options) {
   const SimulationOptions& common = options.simulation;
+
   check(options);
   HeadlessJob job;
   job.scene = load_scene(common.scene, scene_overrides(common));
@@ -89,14 +95,19 @@ int run_run(const RunOptions& options) {
     std::printf("%s\n", dump_parameters(job.scene->parameters).c_str());
     return 0;
   }
+
+  // The hands come from a recording or from the scene's script, and may be recorded again.
   Recording input, record;
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     job.input = &input;
   }
+
+  // Without another length the run is as long as its input.
   job.build = choose_build(common);
   const bool whole_input = job.input && common.steps < 0 && common.time < 0;
   job.steps = whole_input ? static_cast<long>(input.steps.size()) : step_count(common, *job.scene);
+
   record.scene = common.scene;
   record.build = build_name(job.build);
   record.overrides = scene_overrides(common);
@@ -104,6 +115,7 @@ int run_run(const RunOptions& options) {
   job.stop_on_failure = options.on_failure == "stop";
   job.quiet = common.quiet;
 
+  // Statistics and frames are written while the run goes.
   set_thread_count(common.threads);
   StatisticsFile stats(options.stats_file);
   FrameExport frames(options, *job.scene);
@@ -111,10 +123,14 @@ int run_run(const RunOptions& options) {
     frames.write(simulator);
     if (report) stats.add(*report);
   };
+
+  // The run itself.
   profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
   profile_enable(false);
   if (result.start_refused) return 1;
+
+  // The outputs at its end; a failure tells how to repeat it.
   stats.finish(result.statistics);
   if (job.record) save_recording(record, options.record_file);
   if (!common.quiet)
