@@ -64,6 +64,7 @@ constexpr Binding kTable[] = {
 };
 // clang-format on
 
+/// True where a row of the table counts for a hand that holds a grab, or for one that is free.
 bool fits(Hand wanted, bool holds) {
   return wanted == Hand::any || (wanted == Hand::holds) == holds;
 }
@@ -85,14 +86,18 @@ Action find_action(Trigger trigger, int code, const InputState& state) {
 std::string hint_line(bool hand_holds) {
   std::string line;
   for (const Binding& row : kTable) {
+    // While a grab is held only the rows about it matter.
     const bool matters = fits(row.hand, hand_holds) &&
                          (!hand_holds || row.hand == Hand::holds || row.trigger == Trigger::wheel ||
                           row.action == Action::release_selected || row.action == Action::cancel);
     if (row.hint.empty() || !matters) continue;
+
+    // A free hand needs no hint for what a grab alone makes useful.
     if (!hand_holds &&
         (row.trigger == Trigger::wheel ? row.hand == Hand::any : row.action == Action::cancel)) {
       continue;
     }
+
     if (!line.empty()) line += "   ";
     line += row.hint;
   }
@@ -104,12 +109,16 @@ std::string bindings_markdown() {
       "# Keys and mouse\n\n"
       "This page is printed by the program from the table that the window works with\n"
       "(`icloth info --keys`); a test keeps the two equal.\n";
+
+  // A heading and a table for each group, in the order of the rows.
   std::string_view group;
   for (const Binding& row : kTable) {
     if (row.group != group) {
       group = row.group;
       text += "\n## " + std::string(group) + "\n\n| input | action |\n|---|---|\n";
     }
+
+    // Rows without an input repeat the action above with another key.
     if (row.input.empty()) continue;
     text += "| " + std::string(row.input) + " | " + std::string(row.text) + " |\n";
   }

@@ -7,7 +7,7 @@
 
 namespace icloth {
 
-/// Codes are those of GLFW, so that its events need no translation (checked in the window).
+/// The codes are those of GLFW, so that its events need no translation (checked in the window).
 namespace key {
 inline constexpr int kSpace = 32, kPeriod = 46, kEscape = 256, kEnter = 257, kTab = 258,
                      kRight = 262, kLeft = 263, kHome = 268, kF1 = 290, kF11 = 300, kF12 = 301,
@@ -37,12 +37,14 @@ enum class Action {
 
 // clang-format on
 
+/// The kinds of input.
 enum class Trigger { key, press, click, double_click, wheel };
-/// Whether the hand holds a grab.
+/// The state of the hand that a binding asks for.
 enum class Hand { any, holds, free };
-/// What is under the pointer when a button goes down.
+/// The element under the pointer when a button goes down.
 enum class Under { any, cloth, handle, other };
 
+/// One row of the table.
 struct Binding {
   Trigger trigger;
   int code;       ///< key or button, 0 for the wheel
@@ -51,22 +53,24 @@ struct Binding {
   Under under;
   Action action;
   std::string_view group;  ///< heading, the same for neighbours
-  std::string_view input;  ///< as people call it; empty: another way to the action above
-  std::string_view text;   ///< what it does
+  std::string_view input;  ///< in the user's words; empty: the row repeats the action above
+  std::string_view text;   ///< its effect in the user's words
   std::string_view hint;   ///< few words for the hint bar; empty: not shown there
 };
 
-/// The first row that fits is the one that counts.
+/// The table; the first row that fits counts.
 std::span<const Binding> binding_table();
 
+/// The circumstances of an input.
 struct InputState {
   int modifiers = 0;
   bool hand_holds = false;
   Under under = Under::any;
 };
+/// The action of an input, Action::none where no row fits.
 Action find_action(Trigger trigger, int code, const InputState& state);
 
-/// "Left drag grab · P park · …" for what can be done now.
+/// The hints for the present actions: "Left drag grab · P park · …".
 std::string hint_line(bool hand_holds);
 
 /// The contents of docs/keys.md.

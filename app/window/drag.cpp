@@ -12,6 +12,7 @@ constexpr int kMaxId = 999;                           ///< scripted grabs are nu
 constexpr double kMinDepth = 0.01, kMaxDepth = 1000;  ///< [m]
 constexpr double kDepthPerNotch = 1.04, kRadiusPerNotch = 1.15, kStiffnessPerNotch = 1.25;
 
+/// A value that the wheel changed, within the range of its parameter.
 double scaled(const char* parameter, double value, double factor) {
   const ParameterInfo* info = find_parameter(parameter);
   return std::clamp(value * factor, info ? info->minimum : 0, info ? info->maximum : 1e9);
@@ -42,6 +43,7 @@ int Drag::free_id() const {
   return id;
 }
 
+/// Queues an event about a handle for the session.
 void Drag::send(InputEvent::Kind kind, const Handle& handle) {
   InputEvent event;
   event.kind = kind;
@@ -54,6 +56,7 @@ void Drag::send(InputEvent::Kind kind, const Handle& handle) {
   events_.push_back(event);
 }
 
+/// Makes a handle at a hit. Returns its id, or 0 when all ids are taken.
 int Drag::add(const ClothHit& hit) {
   const int id = free_id();
   if (id > kMaxId) return 0;
@@ -62,6 +65,7 @@ int Drag::add(const ClothHit& hit) {
   return id;
 }
 
+/// Takes a handle into the hand.
 void Drag::grasp(Handle& handle, const CursorRay& ray) {
   active_ = handle.id;
   was_parked_ = handle.parked;
@@ -97,6 +101,7 @@ void Drag::follow_camera(const CursorRay& ray) {
   offset_ = handle->target - point_at_depth(ray, depth_);
 }
 
+/// Moves the handle in the hand, and with it all parked ones that are selected.
 void Drag::move_to(Vec3d target) {
   const Handle* active = find(active_);
   if (!active || active->target == target) return;
@@ -116,7 +121,8 @@ void Drag::change_depth(double notches, const CursorRay& ray) {
   move(ray);
 }
 
-/// Radius and stiffness belong to a grab: the solver is told by letting go and grabbing again.
+/// Tells the solver a new radius and stiffness. They belong to a grab, so it is told by letting go
+/// and grabbing again.
 void Drag::regrip(Handle& handle) {
   handle.radius = radius_;
   handle.stiffness = stiffness_;
@@ -153,9 +159,13 @@ void Drag::park() {
 }
 
 void Drag::cancel() {
+  // A fresh grab just ends.
   if (!grabbing()) return;
   if (!was_parked_) return end();
+
   active_ = 0;
+
+  // Handles that had been parked go back to where they were before, and to their old strength.
   for (const Handle& old : before_) {
     Handle* handle = get(old.id);
     if (!handle) continue;
@@ -184,6 +194,7 @@ void Drag::release(int id) {
 }
 
 void Drag::release_selected() {
+  // The handle in the hand comes first, then the selection, then the handle that was made last.
   if (grabbing()) return release(active_);
   std::vector<int> ids;
   for (const Handle& handle : handles_) {
@@ -198,6 +209,7 @@ void Drag::release_all() {
 }
 
 void Drag::restore(std::span<const InputEvent> held) {
+  // Only grabs of the user are handles here; scripted ones belong to the scene.
   const std::vector<Handle> had = std::exchange(handles_, {});
   active_ = 0;
   events_.clear();
@@ -206,7 +218,9 @@ void Drag::restore(std::span<const InputEvent> held) {
     handles_.push_back(
         {grab.handle, grab.face, grab.barycentric, grab.target, grab.radius, grab.stiffness, true});
   }
-  // A grab may be on its way to the solver while the news of the jump is on its way here.
+
+  // A grab may be on its way to the solver while the news of the jump is on its way here, so
+  // handles that are unknown there are released.
   for (const Handle& handle : had) {
     if (!find(handle.id)) send(InputEvent::Kind::release, handle);
   }

@@ -1,5 +1,5 @@
-// Hands on the cloth: from what is under the pointer to handles and their targets. Knows nothing
-// of windows, so that tests can drag.
+// Hands on the cloth: they turn hits under the pointer into handles and their targets. This part
+// knows nothing of windows, so that tests can drag.
 #pragma once
 
 #include <span>
@@ -16,14 +16,14 @@ struct CursorRay {
   Vec3d forward;    ///< unit viewing direction
 };
 
-/// Where the pointer meets the cloth.
+/// The point at which the pointer meets the cloth.
 struct ClothHit {
   Index face = 0;              ///< global cloth face
   Vec3d barycentric{1, 0, 0};  ///< weights of the face's vertices
   Vec3d point;                 ///< [m]
 };
 
-/// A held patch: in the hand, or parked, which means that it keeps pulling by itself.
+/// A held patch. It is in the hand or parked; a parked one keeps pulling by itself.
 struct Handle {
   int id = 0;
   Index face = 0;
@@ -33,43 +33,44 @@ struct Handle {
   bool parked = false, selected = false;
 };
 
-/// What the hands do. Actions queue events for the session, take_events() hands them over.
+/// The hands of the user. Actions queue events for the session, which take_events() returns.
 class Drag {
  public:
-  /// Values of the next grab; the wheel changes them [m], [N/m].
+  /// Sets the values of the next grab [m], [N/m]; the wheel changes them.
   void set_defaults(double radius, double stiffness);
   double radius() const { return radius_; }
   double stiffness() const { return stiffness_; }
 
   /// Grabs the cloth at the exact hit. The target moves in the plane parallel to the screen.
   void begin(const CursorRay& ray, const ClothHit& hit);
-  /// Takes a parked handle into the hand again. With `add` it joins the selection, and all
-  /// selected handles move together; without, it is the only selected one unless it was already.
+  /// Takes a parked handle into the hand again. With `add` it joins the selection, and all selected
+  /// handles move together. Without, it is the only selected one unless it was already.
   void begin_handle(int id, const CursorRay& ray, bool add);
-  /// Pins the cloth where it is: a parked handle at the hit.
+  /// Pins the cloth where it is, by a parked handle at the hit.
   void pin(const ClothHit& hit);
 
   void move(const CursorRay& ray);
-  /// After the camera moved under the hand: the target stays in space.
+  /// Call it after the camera moved under the hand: the target stays in space.
   void follow_camera(const CursorRay& ray);
-  /// Wheel while grabbing: nearer (negative) or further away.
+  /// Moves the target nearer (negative) or further away.
   void change_depth(double notches, const CursorRay& ray);
   void change_radius(double notches);
   void change_stiffness(double notches);
 
-  /// The button went up: a fresh grab lets go, a handle that was parked before stays.
+  /// Call it when the button went up: a fresh grab lets go, a handle that was parked before stays.
   void end();
   /// Leaves the grabbed handle where it is; the hand is free.
   void park();
-  /// Undoes the grab: a fresh one lets go, a parked handle returns to where it was.
+  /// Undoes the grab: a fresh one lets go, a parked handle returns to its old place.
   void cancel();
   void deselect();
-  /// The handle in the hand, else the selected ones, else the one made last.
+  /// Releases the handle in the hand, else the selected ones, else the one made last.
   void release_selected();
   void release(int id);
   void release_all();
 
-  /// After the state jumped back in time: only the handles that are held there remain, parked.
+  /// Call it after the state jumped back in time: only the handles that are held there remain,
+  /// parked.
   void restore(std::span<const InputEvent> held);
 
   bool grabbing() const { return active_ != 0; }
@@ -97,7 +98,7 @@ class Drag {
   std::vector<Handle> before_;  ///< handles when the grab began, for cancel()
 };
 
-/// Point of the ray at a depth along the viewing direction.
+/// The point of the ray at a depth along the viewing direction.
 Vec3d point_at_depth(const CursorRay& ray, double depth);
 
 }  // namespace icloth

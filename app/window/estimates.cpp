@@ -8,7 +8,7 @@
 namespace icloth {
 namespace {
 
-/// |gravity| [m/s²].
+/// The size of gravity, |g| [m/s²].
 double gravity_of(const Parameters& p) { return std::hypot(p.gravity.x, p.gravity.y, p.gravity.z); }
 
 std::string momentum_in_g(const StepReport& report, const Parameters& p) {
@@ -33,7 +33,7 @@ std::string power_value(double watts) {
 
 std::string percent(double share) { return short_number(100 * share) + " %"; }
 
-/// How deep the closest pair is inside the thickness h, 0 … 1.
+/// The depth of the closest pair inside the thickness h, 0 … 1.
 double gap_violation(const StepReport& report, const Parameters& p) {
   return p.proximity.thickness > 0
              ? std::clamp(1 - report.min_gap / p.proximity.thickness, 0.0, 1.0)
@@ -48,8 +48,11 @@ double zone_violation(const StepReport& report, const Parameters& p) {
 
 std::string short_number(double value) {
   if (value == 0) return "0";
+
   const double size = std::fabs(value);
   char text[40];
+
+  // Numbers of ordinary size need no exponent.
   if (size >= 0.01 && size < 9.95) {
     std::snprintf(text, sizeof text, "%.2g", value);
     return text;
@@ -58,9 +61,12 @@ std::string short_number(double value) {
     std::snprintf(text, sizeof text, "%.0f", value);
     return text;
   }
+
   std::snprintf(text, sizeof text, "%.0e", value);
+
+  // Others get a short one: 4e-04 becomes 4e-4.
   std::string out = text;
-  const std::size_t e = out.find('e');  // 4e-04 → 4e-4
+  const std::size_t e = out.find('e');
   if (e == std::string::npos) return out;
   out.erase(e + 2, std::min(out.find_first_not_of('0', e + 2), out.size() - 1) - (e + 2));
   if (out[e + 1] == '+') out.erase(e + 1, 1);
@@ -73,7 +79,10 @@ std::string signed_power(double watts) {
     const char* name;
   } kUnits[] = {{1, "W"}, {1e-3, "mW"}, {1e-6, "μW"}, {1e-9, "nW"}};
   const double size = std::fabs(watts);
-  if (size < 0.5e-9) return "0 W";  // rounding of any scene
+
+  // Less than this is the rounding of any scene.
+  if (size < 0.5e-9) return "0 W";
+
   const auto* unit = std::find_if(std::begin(kUnits), std::end(kUnits) - 1,
                                   [&](const auto& u) { return size >= u.size; });
   return (watts < 0 ? "−" : "+") + short_number(size / unit->size) + " " + unit->name;
@@ -94,7 +103,7 @@ std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
        "How deep the closest pair was inside the thickness that the repulsion keeps, at the start "
        "of the step."},
       {"zone violation", percent(zone_violation(report, p)) + " of the offset",
-       "What the worst impact zone missed of the gap that it had to leave."},
+       "How much the worst impact zone missed of the gap that it had to leave."},
   };
 }
 

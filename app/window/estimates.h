@@ -1,4 +1,4 @@
-// The errors of a step in words and figures, as the panels show them.
+// The errors of a step in words and numbers, as the panels show them.
 #pragma once
 
 #include <string>
@@ -15,17 +15,17 @@ struct Estimate {
   const char* meaning;  ///< one sentence
 };
 
-/// The figures of one step with what they mean; none of a refused step, which has none.
+/// The estimates of one step with their meaning; none for a refused step.
 std::vector<Estimate> estimates(const StepReport& report, const Parameters& parameters);
 
-/// The same in one line of the side panel: "CG 4e-4 · momentum 1e-5 g · −0.3 mW · gap 12 %"; empty
-/// of a refused step.
+/// The estimates in one line of the side panel: "CG 4e-4 · momentum 1e-5 g · −0.3 mW · gap 12 %";
+/// empty for a refused step.
 std::string estimates_in_short(const StepReport& report, const Parameters& parameters);
 
-/// Two digits with a short exponent: 4e-4, 0.012, 3.1.
+/// A number with two digits and a short exponent: 4e-4, 0.012, 3.1.
 std::string short_number(double value);
 
-/// Of energy that a step lost or made: "−0.3 mW", "+12 μW".
+/// The power that a step lost or made: "−0.3 mW", "+12 μW".
 std::string signed_power(double watts);
 
 }  // namespace icloth

@@ -17,13 +17,18 @@ static_assert(offsetof(UiVertex, rgba) == offsetof(ImDrawVert, col));
 Ui::Ui(Window& window) : scale_(window.content_scale()) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
+
+  // The program keeps no files of the interface, and draws its triangles itself.
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.BackendRendererName = "icloth";
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  // Calls the window's own callbacks first, then ImGui's.
+
+  // ImGui's callbacks call the window's own ones first.
   ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+
+  // The font becomes a texture of the painter.
   apply_theme(scale_);
   unsigned char* pixels = nullptr;
   int width = 0, height = 0;
@@ -46,11 +51,15 @@ void Ui::end_frame() { ImGui::Render(); }
 void Ui::paint(int width, int height, unsigned framebuffer) {
   const ImDrawData* data = ImGui::GetDrawData();
   const ImVec2 scale = data->FramebufferScale;
+
+  // Each list of ImGui becomes one drawing, whose batches have a clip rectangle in pixels.
   for (int n = 0; n < data->CmdListsCount; ++n) {
     const ImDrawList& list = *data->CmdLists[n];
     batches_.clear();
     for (const ImDrawCmd& command : list.CmdBuffer) {
       if (command.UserCallback || command.ElemCount == 0) continue;
+
+      // Rectangles are clipped to the framebuffer.
       const auto clip = [&](float value, float origin, float factor, int limit) {
         const float pixel = (value - origin) * factor;
         return pixel < 0                           ? 0.0f
@@ -66,6 +75,7 @@ void Ui::paint(int width, int height, unsigned framebuffer) {
                           command.ElemCount,
                           command.VtxOffset});
     }
+
     const auto* vertices = reinterpret_cast<const UiVertex*>(list.VtxBuffer.Data);
     painter_.paint({{vertices, static_cast<std::size_t>(list.VtxBuffer.Size)},
                     {list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.Size)},

@@ -1,6 +1,6 @@
-// Dear ImGui between the window and the renderer's painter. The painter replaces ImGui's own
-// OpenGL backend: the 1.86 of Debian loads its functions through GLX only, overruns a buffer while
-// it does so, and orphans buffers in a way that some drivers get wrong.
+// Dear ImGui between the window and the renderer's painter. The painter replaces ImGui's own OpenGL
+// backend: the 1.86 of Debian loads its functions through GLX only, overruns a buffer while it does
+// so, and orphans buffers in a way that some drivers get wrong.
 #pragma once
 
 #include <string>
@@ -11,6 +11,7 @@
 
 namespace icloth {
 
+/// The user interface of one window.
 class Ui {
  public:
   /// The window must outlive it. Font and sizes follow the window's content scale.
@@ -20,7 +21,7 @@ class Ui {
   Ui& operator=(const Ui&) = delete;
 
   void begin_frame();
-  /// Ends the frame; paint() draws it as often as wanted.
+  /// Ends the frame; paint() draws it any number of times.
   void end_frame();
   void paint(int width, int height, unsigned framebuffer);
 

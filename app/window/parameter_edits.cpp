@@ -6,6 +6,7 @@
 
 namespace icloth {
 
+/// Sets a value and notes it for the session; a second change of the same parameter replaces it.
 void ParameterEdits::apply(const ParameterInfo& info, double value) {
   set_parameter(values_, info, value);
   if (!changes_.empty() && changes_.back().first == info.name) {
@@ -17,11 +18,16 @@ void ParameterEdits::apply(const ParameterInfo& info, double value) {
 
 void ParameterEdits::set(const ParameterInfo& info, double value, bool continued) {
   if (!std::isfinite(value)) return;
+
+  // The value is rounded and kept within its range.
   if (info.field.kind != ParameterInfo::Kind::number) value = std::round(value);
   value = std::clamp(value, info.minimum, info.maximum);
   const double before = this->value(info);
+
   if (value == before) return;
   apply(info, value);
+
+  // A continued change is one with the change before it, so that one undo takes both back.
   undone_.clear();
   if (continued && !done_.empty() && done_.back().back().info == &info) {
     done_.back().back().after = value;

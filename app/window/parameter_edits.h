@@ -9,9 +9,10 @@
 
 namespace icloth {
 
+/// Keeps the values and their history.
 class ParameterEdits {
  public:
-  /// `start` are the scene's values: what a reset of a value returns to.
+  /// Starts from the scene's values, to which a reset returns.
   explicit ParameterEdits(const Parameters& start) : start_(start), values_(start) {}
 
   const Parameters& values() const { return values_; }
@@ -19,17 +20,17 @@ class ParameterEdits {
   double start_value(const ParameterInfo& info) const { return get_parameter(start_, info); }
   bool changed(const ParameterInfo& info) const { return value(info) != start_value(info); }
 
-  /// Clamps to the valid range. With `continued` the change belongs to the one before (a slider
-  /// that is still held) and is undone together with it.
+  /// Sets a value, clamped to its range. With `continued` the change belongs to the one before (a
+  /// slider that is still held) and is undone together with it.
   void set(const ParameterInfo& info, double value, bool continued = false);
-  /// Takes over all values, each within its range; undone at once.
+  /// Takes over all values, each within its range, as one change.
   void set_all(const Parameters& values);
   void reset(const ParameterInfo& info) { set(info, start_value(info)); }
-  /// False when there is nothing to undo or redo.
+  /// These return false when there is nothing to undo or redo.
   bool undo();
   bool redo();
 
-  /// Changes since the last call, for the session.
+  /// Returns the changes since the last call, for the session.
   std::vector<std::pair<std::string, double>> take_changes();
 
  private:

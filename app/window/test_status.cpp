@@ -10,9 +10,11 @@ TestStatusFile::TestStatusFile() {
 }
 
 void TestStatusFile::write(const TestStatus& s) const {
+  // A file of another name is written and then renamed, so that a reader never sees half a line.
   const std::string part = path_ + ".part";
   std::FILE* file = std::fopen(part.c_str(), "w");
   if (!file) return;
+
   const auto word = [](bool b) { return b ? "true" : "false"; };
   std::fprintf(file,
                "{\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "
@@ -26,6 +28,7 @@ void TestStatusFile::write(const TestStatus& s) const {
                static_cast<double>(s.view[0]), static_cast<double>(s.view[1]),
                static_cast<double>(s.view[2]), static_cast<double>(s.view[3]), s.mean.x, s.mean.y,
                s.mean.z, word(s.cloth_visible), s.cloth_x, s.cloth_y);
+
   const bool written = std::fclose(file) == 0;
   if (written) std::rename(part.c_str(), path_.c_str());
 }

@@ -1,4 +1,4 @@
-// What tests of the window read: one JSON line, written anew every second.
+// The state of the window as its tests read it: one JSON line, written anew every second.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 namespace icloth {
 
+/// The numbers of the line.
 struct TestStatus {
   long long step = 0;
   double time = 0;

@@ -1,4 +1,4 @@
-// How the panels look: calm and dark, one accent colour, the same colours in all panels.
+// The look of the panels: calm and dark, one accent colour, the same colours in all panels.
 #pragma once
 
 #include <imgui.h>
@@ -18,11 +18,11 @@ inline constexpr ImU32 kText = IM_COL32(222, 226, 233, 255), kDim = IM_COL32(138
                        kLit = IM_COL32(38, 92, 136, 255);  ///< a button that is in force
 }  // namespace colour
 
-/// Style and font of the current ImGui context for a content scale. The font is DejaVu Sans where
-/// the system has it, else ImGui's own bitmap font.
+/// Sets style and font of the current ImGui context for a content scale. The font is DejaVu Sans
+/// where the system has it, else ImGui's own bitmap font.
 void apply_theme(float scale);
 
-/// The text with symbols that the font lacks spelled out (ρ → rho).
+/// The text with the symbols that the font lacks spelled out (ρ → rho).
 std::string shown(std::string_view text);
 
 inline ImVec4 vec4(ImU32 c) { return ImGui::ColorConvertU32ToFloat4(c); }

@@ -25,13 +25,15 @@ bool is_software(const std::string& renderer) {
   return false;
 }
 
-/// Software rendering needs a core for itself; a graphics card does not.
+/// The number of threads of the solver. Software rendering needs a core for itself; a graphics card
+/// does not.
 int solver_threads(int asked, bool software) {
   if (asked > 0) return asked;
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return software ? std::max(1, all - 1) : all;
 }
 
+/// Explains why a start state that intersects is refused.
 std::string start_sentence(std::size_t pairs) {
   if (pairs == 0) return {};
   return "In the start state " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
@@ -62,6 +64,7 @@ Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
       software_(is_software(gl_renderer())),
       threads_(solver_threads(options.threads, software_)),
       edits_(scene_->parameters) {
+  // The parts follow the machine, then the scene and the options.
   set_thread_count(threads_);
   renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
   session_ = make_session(options_, scene_, start_sentence(start_intersections_.size()));
@@ -72,20 +75,28 @@ Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
 
 void Viewer::run() {
   while (!window_.should_close()) frame();
-  window_.hide();  // the step in progress may take a while
+
+  // The window goes first, since the step in progress may take a while.
+  window_.hide();
   session_->stop();
   if (!options_.record_file.empty()) save_recording(session_->recording(), options_.record_file);
 }
 
 void Viewer::frame() {
   const std::vector<WindowEvent> events = window_.poll();
+
+  // A window that is not seen draws nothing.
   if (window_.minimised()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return;
   }
+
+  // Newly published states come first, then input, so that hands act on what the user saw.
   take_state();
   for (const WindowEvent& event : events) handle(event);
   hand_over();
+
+  // The panels may change parameters, which reach the solver with the same frame.
   ui_.begin_frame();
   draw_panels();
   ui_.end_frame();
@@ -93,42 +104,51 @@ void Viewer::frame() {
   hand_over();
   draw_scene();
   show_frame();
+
+  // Frames are counted over the last second.
   const double now = window_.seconds();
   frame_times_.push_back(now);
   while (now - frame_times_.front() > 1) frame_times_.pop_front();
+
   if (test_file_.wanted() && now - last_status_ >= kStatusSeconds) {
     test_file_.write(test_status());
     last_status_ = now;
   }
 }
 
+/// Takes the newest published state, and notes what has changed with it.
 void Viewer::take_state() {
   stages_.add(session_->take_reports());
   if (!session_->take()) return;
   const PublishedState& state = session_->state();
   dirty_ = hover_stale_ = true;
+
+  // After a jump back in time the handles and the plots are those of that time.
   if (state.rewinds != seen_rewinds_) {
     seen_rewinds_ = state.rewinds;
     drag_.restore(state.held);
     stages_.cut(state.step);
   }
+
   if (state.notes != seen_notes_) {
     seen_notes_ = state.notes;
     tell(state.note);
   }
+
   if (state.failed != seen_failure_) {
     seen_failure_ = state.failed;
     marked_faces_ = failing_faces();
   }
 }
 
-/// What hands and panels changed goes to the solver.
+/// Sends the changes that hands and panels made to the solver.
 void Viewer::hand_over() {
   for (const InputEvent& event : drag_.take_events()) session_->post(event);
   for (const auto& [name, value] : edits_.take_changes()) session_->set(name, value);
 }
 
 void Viewer::draw_panels() {
+  // The column on the left and the bar below leave the rest of the window to the picture.
   const float scale = ui_.scale();
   const float wide = static_cast<float>(window_.width()),
               high = static_cast<float>(window_.height());
@@ -136,6 +156,8 @@ void Viewer::draw_panels() {
   const Rect view{side, 0, wide - side, high - bar};
   if (view.x != view_.x || view.width != view_.width || view.height != view_.height) dirty_ = true;
   view_ = view;
+
+  // Every panel draws itself; floating ones report their place.
   state_.overlays.clear();
   PanelContext context{*session_, session_->state(),    edits_, stages_, drag_, *scene_,
                        world_,    start_intersections_, state_, scale};
@@ -144,15 +166,17 @@ void Viewer::draw_panels() {
   draw_failure(context, view_);
   draw_help(context, view_);
   draw_menu();
+
+  // Requests of the panels are carried out after all of them are drawn.
   if (hover_ && !drag_.grabbing()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (state_.show_failure) look_at_failure();
   if (state_.save_session) act(Action::save_session);
   state_.show_failure = state_.save_session = false;
 }
 
-/// Drawing on the processor takes tens of milliseconds and the solver's cores: then the panels and
-/// the pointer get at least as much time, what moves is drawn at half the resolution, and what
-/// has come to rest once more at the full one.
+/// Decides whether the scene is drawn in this frame. Drawing on the processor takes tens of
+/// milliseconds and the solver's cores. Panels and pointer then get at least as much time, a moving
+/// scene is drawn at half the resolution, and one that has come to rest once more at the full one.
 bool Viewer::time_to_draw() {
   const double now = window_.seconds();
   if (dirty_) last_change_ = now;
@@ -163,6 +187,8 @@ bool Viewer::time_to_draw() {
 
 void Viewer::draw_scene() {
   if (!time_to_draw()) return;
+
+  // The picture is sharp unless the processor draws something that moves.
   const double begin = window_.seconds();
   sharp_ = !software_ || !dirty_ || want_screenshot_;
   dirty_ = false;
@@ -172,6 +198,8 @@ void Viewer::draw_scene() {
   const int width = std::max(8, static_cast<int>(view_.width * factor));
   const int height = std::max(8, static_cast<int>(view_.height * factor));
   picture_.resize(width, height);
+
+  // The content of the picture: the published state, and the user's marks on it.
   const std::vector<HandleState> handles = handle_states();
   std::vector<Index> pins;
   for (Index v = 0; v < world_.cloth_vertices; ++v) {
@@ -188,6 +216,8 @@ void Viewer::draw_scene() {
   scene_frame.hover = hover;
   scene_frame.view = state_.view;
   scene_frame.strain_range = kStrainRange;
+
+  // The time is that of finished drawing, which the next frames are paced by.
   renderer_.draw(scene_frame, camera_, width, height, picture_.framebuffer());
   if (software_) finish_drawing();
   draw_end_ = window_.seconds();
@@ -204,18 +234,21 @@ void Viewer::show_frame() {
   window_.show();
 }
 
-/// The same frame once more, into a picture of its own: what a window shows may be covered by
-/// other windows.
+/// Draws the frame once more into a picture of its own, since the window on the screen may be
+/// covered by other windows.
 void Viewer::take_screenshot() {
   want_screenshot_ = false;
   const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
   Target target(Target::Kind::bytes);
   target.resize(width, height);
+
   clear_picture(target.framebuffer(), 0, 0, 0);
   const double factor = static_cast<double>(width) / window_.width();
   show_picture(picture_, target.framebuffer(), height, static_cast<int>(view_.x * factor), 0,
                static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
   ui_.paint(width, height, target.framebuffer());
+
+  // A folder that cannot be written is told, not thrown.
   const std::string path = free_name("icloth", ".png");
   try {
     write_png(path, read_picture(target));
@@ -225,6 +258,7 @@ void Viewer::take_screenshot() {
   }
 }
 
+/// The handles as they are drawn: the user's at their present hit, and those of the script.
 std::vector<HandleState> Viewer::handle_states() const {
   const PublishedState& state = session_->state();
   std::vector<HandleState> list;
@@ -235,12 +269,14 @@ std::vector<HandleState> Viewer::handle_states() const {
     }
     list.push_back(shown_handle);
   }
+
   for (const HandleState& held : state.handles) {
     if (held.handle >= kFirstScriptedHandle) list.push_back(held);
   }
   return list;
 }
 
+/// The held point of the cloth, where it is now.
 Vec3d Viewer::hit_point(const Handle& handle) const {
   const auto& positions = session_->state().positions;
   const Triangle& face = world_.face[static_cast<std::size_t>(handle.face)];
@@ -252,7 +288,7 @@ Vec3d Viewer::hit_point(const Handle& handle) const {
   return point;
 }
 
-/// Faces to show in red: those that cross at the start, or those around the offending elements.
+/// The faces to show in red: those that cross at the start, or those around the offending elements.
 std::vector<Index> Viewer::failing_faces() const {
   std::vector<Index> faces;
   if (!session_->state().failed) return faces;
@@ -260,6 +296,8 @@ std::vector<Index> Viewer::failing_faces() const {
     faces.push_back(pair.a);
     faces.push_back(pair.b);
   }
+
+  // A face is around an element if it holds all of its vertices.
   const auto contains = [](const Triangle& face, std::span<const Index> vertices) {
     return std::ranges::all_of(vertices, [&](Index v) { return std::ranges::count(face, v) > 0; });
   };
@@ -274,6 +312,7 @@ std::vector<Index> Viewer::failing_faces() const {
       }
     }
   }
+
   std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
@@ -284,6 +323,7 @@ void Viewer::tell(const std::string& note) {
   note_end_ = window_.seconds() + kNoteSeconds;
 }
 
+/// The first name of its kind that is not taken.
 std::string Viewer::free_name(const char* stem, const char* extension) const {
   for (int k = 1;; ++k) {
     char number[24];
@@ -296,6 +336,7 @@ std::string Viewer::free_name(const char* stem, const char* extension) const {
   }
 }
 
+/// The texts of the status bar.
 StatusFigures Viewer::figures() const {
   StatusFigures figures;
   figures.device = std::string(build_name(options_.build));
@@ -308,12 +349,14 @@ StatusFigures Viewer::figures() const {
   return figures;
 }
 
-/// A point of the cloth that is in view and nothing hides: among some faces the lowest, because
-/// hanging ends follow a hand best.
+/// A point of the cloth that is in view and that nothing hides, for tests. Of some faces it is the
+/// lowest one, because hanging ends follow a hand best.
 std::optional<Vec3d> Viewer::graspable_point() const {
   const auto& positions = session_->state().positions;
   const int width = static_cast<int>(view_.width), height = static_cast<int>(view_.height);
   std::optional<Vec3d> best;
+
+  // A sample of faces is enough. Those above the best one so far need no test.
   for (Index k = 0; k < kGraspSamples; ++k) {
     const auto f =
         static_cast<std::size_t>(static_cast<std::int64_t>(k) * world_.cloth_faces / kGraspSamples);
@@ -321,12 +364,17 @@ std::optional<Vec3d> Viewer::graspable_point() const {
     for (const Index v : world_.face[f]) {
       centre += (1.0 / 3) * convert<double>(positions[static_cast<std::size_t>(v)]);
     }
+
     if (best && centre.y >= best->y) continue;
+
+    // The centre has to be in view and to be the first hit of its ray.
     const Projected at = camera_.project(centre, width, height);
     if (at.depth <= 0 || !in_view(view_.x + at.x, view_.y + at.y)) continue;
     const Pick under = pick_at(view_.x + at.x, view_.y + at.y);
     if (!under.reachable() || norm(under.point - centre) > 0.02) continue;
-    // Well inside: the cloth may have swung a little by the time the mouse gets there.
+
+    // The point has to be well inside, as the cloth may have swung a little by the time the mouse
+    // gets there.
     constexpr double kMargin = 14;  // pixels
     bool inside = true;
     for (const auto& [dx, dy] :
@@ -339,6 +387,8 @@ std::optional<Vec3d> Viewer::graspable_point() const {
 
 TestStatus Viewer::test_status() const {
   const PublishedState& state = session_->state();
+
+  // Numbers of the run, of the window and of the hands.
   TestStatus status;
   status.step = state.step;
   status.time = state.time;
@@ -352,6 +402,8 @@ TestStatus Viewer::test_status() const {
   status.playing = state.playing;
   status.failed = state.failed;
   status.panels = state_.panels;
+
+  // The place of the cloth, for tests that drag it.
   status.view = {view_.x, view_.y, view_.width, view_.height};
   const std::vector<Vec3d> points = cloth_points();
   for (const Vec3d p : points) status.mean += (1.0 / static_cast<double>(points.size())) * p;

@@ -1,5 +1,5 @@
-// The interactive window: what the user does goes to camera, hands and session; what the session
-// publishes is drawn. One frame of the screen is one call of frame().
+// The interactive window. Input goes to camera, hands and session; the states that the session
+// publishes are drawn. One frame of the screen is one call of frame().
 #pragma once
 
 #include <array>
@@ -27,16 +27,17 @@
 
 namespace icloth {
 
+/// Owns the window, the renderer and the session, and connects them.
 class Viewer {
  public:
   /// Opens the window and builds the solver. Throws DeviceError and InputError.
   Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene);
 
-  /// Until the window is closed. Writes the recording when the options ask for it.
+  /// Runs until the window is closed. Writes the recording when the options ask for it.
   void run();
 
  private:
-  /// What the pointer does to the camera while a button is held.
+  /// The motion of the camera while a button is held.
   enum class Gesture { none, orbit, pan, dolly };
 
   // One frame, in this order (viewer.cpp).
@@ -67,7 +68,7 @@ class Viewer {
   void look_at_failure();
   void draw_menu();
 
-  // What is where.
+  // Positions on the window, and what lies there.
   bool in_view(double x, double y) const;
   Ray ray(double x, double y) const;
   CursorRay cursor_ray() const;

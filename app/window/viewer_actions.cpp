@@ -1,4 +1,4 @@
-// What the actions of the table of bindings do.
+// The effects of the actions in the table of bindings.
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +15,7 @@ Vec3d picked_point(const Pick& pick) { return pick.reachable() ? pick.point : pi
 
 }  // namespace
 
+/// Carries out an action; those of hands, camera and session have functions of their own.
 void Viewer::act(Action action, double amount) {
   if (act_on_hands(action, amount) || act_on_camera(action, amount) || act_on_session(action)) {
     return;
@@ -29,6 +30,8 @@ void Viewer::act(Action action, double amount) {
     case Action::view_strain:
       state_.view = ViewMode::strain;
       break;
+
+    // The window itself.
     case Action::toggle_panels:
       state_.panels = !state_.panels;
       break;
@@ -49,9 +52,12 @@ void Viewer::act(Action action, double amount) {
   }
 }
 
+/// Carries out an action of the hands; false when it is none. The hit is the one under the last
+/// press.
 bool Viewer::act_on_hands(Action action, double amount) {
   const ClothHit hit{menu_pick_.face, menu_pick_.barycentric, menu_pick_.point};
   switch (action) {
+    // These act on what is under the pointer.
     case Action::grab:
       drag_.begin(cursor_ray(), hit);
       return true;
@@ -67,18 +73,23 @@ bool Viewer::act_on_hands(Action action, double amount) {
     case Action::unpin:
       drag_.release(menu_handle_);
       return true;
+
+    // These end the grab in the hand, or release handles.
     case Action::park:
       drag_.park();
       return true;
     case Action::cancel:
       cancel();
       return true;
+
     case Action::release_selected:
       drag_.release_selected();
       return true;
     case Action::release_all:
       drag_.release_all();
       return true;
+
+    // The wheel changes the grab in the hand, and the parameters of the next one.
     case Action::grab_depth:
       drag_.change_depth(amount, cursor_ray());
       return true;
@@ -99,8 +110,10 @@ bool Viewer::act_on_hands(Action action, double amount) {
   }
 }
 
+/// Carries out an action of the camera; false when it is none.
 bool Viewer::act_on_camera(Action action, double amount) {
   switch (action) {
+    // A gesture moves the camera until its button goes up.
     case Action::orbit:
       gesture_ = Gesture::orbit;
       break;
@@ -110,6 +123,8 @@ bool Viewer::act_on_camera(Action action, double amount) {
     case Action::dolly_drag:
       gesture_ = Gesture::dolly;
       break;
+
+    // The wheel goes towards the point under the pointer, where there is one.
     case Action::dolly: {
       const Pick under = pick_at(x_, y_);
       const double factor = std::pow(kDollyPerNotch, amount);
@@ -120,11 +135,15 @@ bool Viewer::act_on_camera(Action action, double amount) {
       }
       break;
     }
+
+    // The press was at the new pivot.
     case Action::set_pivot:
       if (menu_pick_.hit_cloth() || menu_pick_.hit_obstacle()) {
         camera_.set_pivot(picked_point(menu_pick_));
       }
       break;
+
+    // Framing shows all of something.
     case Action::frame_selection:
       frame_selection();
       break;
@@ -134,9 +153,12 @@ bool Viewer::act_on_camera(Action action, double amount) {
       frame_box(all);
       break;
     }
+
     case Action::menu:
       open_menu_ = true;
       break;
+
+    // The clipboard holds a camera as text, in the form of scene files.
     case Action::copy_camera:
       window_.set_clipboard(camera_to_json(camera_.pose()));
       tell("The camera is in the clipboard as JSON.");
@@ -151,15 +173,19 @@ bool Viewer::act_on_camera(Action action, double amount) {
     default:
       return false;
   }
+
+  // A grab in the hand stays in space while the camera moves.
   drag_.follow_camera(cursor_ray());
   return true;
 }
 
+/// Carries out an action of the simulation; false when it is none.
 bool Viewer::act_on_session(Action action) {
   switch (action) {
     case Action::play_pause:
       session_->state().playing ? session_->pause() : session_->play();
       return true;
+
     case Action::step:
       session_->step_once();
       return true;
@@ -169,12 +195,15 @@ bool Viewer::act_on_session(Action action) {
     case Action::reset:
       session_->reset();
       return true;
+
+    // Changes of parameters have a history of their own.
     case Action::undo:
       if (!edits_.undo()) tell("There is nothing to undo.");
       return true;
     case Action::redo:
       if (!edits_.redo()) tell("There is nothing to redo.");
       return true;
+
     case Action::save_session:
       session_->save(options_.record_file.empty() ? free_name("session", ".json")
                                                   : options_.record_file);
@@ -184,7 +213,7 @@ bool Viewer::act_on_session(Action action) {
   }
 }
 
-/// Esc: the grab, then the selection, then the help. It never quits.
+/// Takes back the grab, else the selection, else the help. It never quits.
 void Viewer::cancel() {
   const bool selected = std::ranges::any_of(drag_.handles(), &Handle::selected);
   if (drag_.grabbing()) {
@@ -216,6 +245,7 @@ void Viewer::frame_box(const std::vector<Vec3d>& points) {
                     static_cast<double>(view_.width) / static_cast<double>(view_.height));
 }
 
+/// Frames the targets of the selected handles with some space around them, else the cloth.
 void Viewer::frame_selection() {
   std::vector<Vec3d> points;
   const Vec3d margin{0.15, 0.15, 0.15};
@@ -227,6 +257,7 @@ void Viewer::frame_selection() {
   frame_box(points.empty() ? cloth_points() : points);
 }
 
+/// Frames the faces that are marked after a failure.
 void Viewer::look_at_failure() {
   std::vector<Vec3d> points;
   for (const Index f : marked_faces_) {
@@ -238,10 +269,13 @@ void Viewer::look_at_failure() {
   dirty_ = true;
 }
 
+/// Draws the menu of a right click, which is about the point under it.
 void Viewer::draw_menu() {
   if (open_menu_) ImGui::OpenPopup("##menu");
   open_menu_ = false;
   if (!ImGui::BeginPopup("##menu")) return;
+
+  // Entries that need a hit are disabled without one.
   const bool hit = menu_pick_.hit_cloth() || menu_pick_.hit_obstacle();
   if (menu_handle_ && ImGui::MenuItem("Release this handle")) drag_.release(menu_handle_);
   if (ImGui::MenuItem("Pin the cloth here", "Ctrl+click", false, menu_pick_.reachable())) {
@@ -255,6 +289,8 @@ void Viewer::draw_menu() {
   if (ImGui::MenuItem("Release all handles", "Shift+X", false, !drag_.handles().empty())) {
     drag_.release_all();
   }
+
+  // The point itself, for scripts and reports.
   if (menu_pick_.reachable()) {
     ImGui::Separator();
     ImGui::TextDisabled("face %d at %.3f, %.3f, %.3f m", menu_pick_.face, menu_pick_.point.x,

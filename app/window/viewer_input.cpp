@@ -1,4 +1,5 @@
-// Mouse and keys: what is under the pointer, and which action of the table of bindings is meant.
+// Mouse and keys: they find the element under the pointer, and the action that the table of
+// bindings gives.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +9,7 @@ namespace icloth {
 
 namespace {
 
-constexpr double kClickSlack = 4;          ///< a button that moved less was a click [pixels]
+constexpr double kClickSlack = 4;          ///< a button that moved by less is a click [pixels]
 constexpr double kHandleReach = 13;        ///< [pixels]
 constexpr double kDoubleClickTime = 0.35;  ///< [s]
 
@@ -34,12 +35,14 @@ Pick Viewer::pick_at(double x, double y) const {
   return pick(world_, session_->state().positions, ray(x, y));
 }
 
-/// The parked handle whose target or hit is under the pointer, 0: none.
+/// The parked handle whose target or hit is under the pointer, or 0.
 int Viewer::handle_at(double x, double y) const {
   int nearest = 0;
   double reach = kHandleReach * static_cast<double>(ui_.scale());
   for (const Handle& handle : drag_.handles()) {
     if (!handle.parked) continue;
+
+    // Both ends of its line can be taken.
     for (const Vec3d point : {handle.target, hit_point(handle)}) {
       const Projected at =
           camera_.project(point, static_cast<int>(view_.width), static_cast<int>(view_.height));
@@ -52,11 +55,15 @@ int Viewer::handle_at(double x, double y) const {
   return nearest;
 }
 
+/// Finds the point of the cloth under the pointer, for the ring that is drawn there.
 void Viewer::update_hover() {
   const bool wanted = pointer_inside_ && in_view(x_, y_) && gesture_ == Gesture::none &&
                       !drag_.grabbing() && !ui_.popup_open();
+
+  // Picking tests every face, so it happens only when something has changed.
   if (wanted && !hover_stale_) return;
   hover_stale_ = false;
+
   std::optional<Vec3d> hover;
   if (wanted) {
     if (const Pick under = pick_at(x_, y_); under.reachable()) hover = under.point;
@@ -65,11 +72,13 @@ void Viewer::update_hover() {
   hover_ = hover;
 }
 
+/// Passes an event on. Events over the picture make it stale.
 void Viewer::handle(const WindowEvent& event) {
   if (in_view(event.x, event.y) || in_view(x_, y_) || gesture_ != Gesture::none ||
       drag_.grabbing() || event.kind == WindowEvent::Kind::key) {
     dirty_ = hover_stale_ = true;
   }
+
   switch (event.kind) {
     case WindowEvent::Kind::press:
       press(event);
@@ -86,6 +95,8 @@ void Viewer::handle(const WindowEvent& event) {
     case WindowEvent::Kind::leave:
       pointer_inside_ = false;
       break;
+
+    // A text field takes the keys that it needs.
     case WindowEvent::Kind::key:
       if (ui_.wants_text()) break;
       act(find_action(Trigger::key, event.code, {event.modifiers, drag_.grabbing(), Under::other}));
@@ -93,21 +104,29 @@ void Viewer::handle(const WindowEvent& event) {
   }
 }
 
+/// A button went down: notes what is under it, and finds the action.
 void Viewer::press(const WindowEvent& event) {
   move(event);
   if (!in_view(x_, y_) || ui_.popup_open()) return;
+
+  // The wheel may have changed the parameters of a grab since.
   drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
+
+  // Two presses of the left button at one place, shortly after each other, are a double click.
   const bool twice = event.code == button::kLeft && event.time - press_time_ < kDoubleClickTime &&
                      std::hypot(x_ - press_x_, y_ - press_y_) < kClickSlack;
   press_x_ = x_;
   press_y_ = y_;
   press_time_ = event.code == button::kLeft ? event.time : -1;
+
+  // The element under the pointer decides what a press means.
   menu_handle_ = handle_at(x_, y_);
   menu_pick_ = pick_at(x_, y_);
   const Under under = menu_handle_             ? Under::handle
                       : menu_pick_.reachable() ? Under::cloth
                                                : Under::other;
   const InputState input{event.modifiers, drag_.grabbing(), under};
+
   gesture_button_ = event.code;
   if (twice) {
     const Action action = find_action(Trigger::double_click, event.code, input);
@@ -116,21 +135,26 @@ void Viewer::press(const WindowEvent& event) {
   act(find_action(Trigger::press, event.code, input));
 }
 
+/// A button went up: ends grab and gesture, or completes a click.
 void Viewer::release(const WindowEvent& event) {
   move(event);
   if (event.code == button::kLeft) drag_.end();
+
   if (gesture_ == Gesture::none || event.code != gesture_button_) return;
   gesture_ = Gesture::none;
   if (std::hypot(x_ - press_x_, y_ - press_y_) >= kClickSlack) return;
   act(find_action(Trigger::click, event.code, {event.modifiers, drag_.grabbing(), Under::any}));
 }
 
+/// The pointer moved: moves the grab or the camera.
 void Viewer::move(const WindowEvent& event) {
   const double dx = event.x - x_, dy = event.y - y_;
   x_ = event.x;
   y_ = event.y;
   pointer_inside_ = true;
   if (dx == 0 && dy == 0) return;
+
+  // Without a gesture of the camera the grab in the hand moves.
   const int height = static_cast<int>(view_.height);
   switch (gesture_) {
     case Gesture::none:
@@ -146,6 +170,8 @@ void Viewer::move(const WindowEvent& event) {
       camera_.dolly(std::exp(2 * dy / height));
       break;
   }
+
+  // The camera moved under the hand.
   drag_.follow_camera(cursor_ray());
 }
 

@@ -37,7 +37,8 @@ std::string glfw_problem() {
 
 Window& self(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
-/// Modifiers change between events of the pointer; GLFW tells them with keys and buttons only.
+/// The modifiers that are held now. They change between events of the pointer, and GLFW tells them
+/// with keys and buttons only.
 int modifiers_now(GLFWwindow* window) {
   const auto down = [window](int a, int b) {
     return glfwGetKey(window, a) == GLFW_PRESS || glfwGetKey(window, b) == GLFW_PRESS;
@@ -52,18 +53,24 @@ Window::Window(const std::string& title, int width, int height) {
   if (!glfwInit()) {
     throw DeviceError("no display for a window (" + glfw_problem() + "); " + kInstead);
   }
+
+  // A core context is asked for; the scene has depth buffers of its own.
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+
   if (!window_) {
     const std::string reason = glfw_problem();
     glfwTerminate();
     throw DeviceError("no OpenGL 4.5 core context for a window (" + reason + "); " + kInstead);
   }
+
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, this);
+
+  // A context without the functions of 4.5 is of no use.
   make_current();
   try {
     load_gl(glfwGetProcAddress);
@@ -72,6 +79,8 @@ Window::Window(const std::string& title, int width, int height) {
     glfwTerminate();
     throw;
   }
+
+  // Frames are paced by the display, or by its refresh rate where the swap does not wait.
   glfwSwapInterval(1);
   const GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor ? glfwGetVideoMode(glfwGetPrimaryMonitor()) : nullptr;
@@ -98,6 +107,7 @@ void Window::add(WindowEvent event) {
   events_.push_back(event);
 }
 
+/// Queues all input for poll(), with the place of the pointer.
 void Window::install_callbacks() {
   using Kind = WindowEvent::Kind;
   glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
@@ -108,6 +118,7 @@ void Window::install_callbacks() {
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
     if (!entered) self(w).add({.kind = Kind::leave});
   });
+
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int code, int action, int modifiers) {
     self(w).add({.kind = action == GLFW_PRESS ? Kind::press : Kind::release,
                  .code = code,
@@ -116,6 +127,8 @@ void Window::install_callbacks() {
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double dy) {
     self(w).add({.kind = Kind::wheel, .modifiers = modifiers_now(w), .amount = dy});
   });
+
+  // A key that is held repeats as presses do.
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int code, int, int action, int modifiers) {
     if (action == GLFW_RELEASE) return;
     self(w).add({.kind = Kind::key, .code = code, .modifiers = modifiers & kModifiers});
@@ -143,7 +156,8 @@ void Window::hide() {
   glfwPollEvents();
 }
 
-/// Without a display behind it (virtual screens) the swap does not wait: the clock does.
+/// Shows the frame. Without a display behind it (virtual screens) the swap does not wait, so the
+/// clock does.
 void Window::show() {
   glfwSwapBuffers(window_);
   const double now = glfwGetTime();
@@ -154,10 +168,13 @@ void Window::show() {
 }
 
 void Window::toggle_full_screen() {
+  // The window goes back to its old place.
   if (glfwGetWindowMonitor(window_)) {
     glfwSetWindowMonitor(window_, nullptr, restore_[0], restore_[1], restore_[2], restore_[3], 0);
     return;
   }
+
+  // The place is kept before the window covers the monitor.
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
   if (!mode) return;

@@ -1,4 +1,4 @@
-// A window with an OpenGL context and the input it received. GLFW stays behind it.
+// A window with an OpenGL context, and the input that it received. GLFW is used nowhere else.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ struct GLFWwindow;
 
 namespace icloth {
 
-/// One thing that happened, in the order it happened. Positions are logical window pixels from
-/// the top left corner.
+/// One event, in the order in which they happened. Positions are logical window pixels from the top
+/// left corner.
 struct WindowEvent {
   enum class Kind { press, release, move, wheel, key, leave };
   Kind kind = Kind::move;
@@ -22,10 +22,11 @@ struct WindowEvent {
   double time = 0;      ///< [s]
 };
 
+/// The window of the program.
 class Window : public GlContext {
  public:
   /// Opens the window and makes its context current, functions loaded. Throws DeviceError when
-  /// there is no display or no OpenGL 4.5 core; the message says what to do instead.
+  /// there is no display or no OpenGL 4.5 core; the message names the commands that need none.
   Window(const std::string& title, int width, int height);
   ~Window() override;
 
@@ -35,9 +36,9 @@ class Window : public GlContext {
   bool should_close() const;
   void request_close();
   void hide();
-  /// Handles what arrived and returns it.
+  /// Handles the events that arrived and returns them.
   std::vector<WindowEvent> poll();
-  /// Shows the frame, not more often than the display.
+  /// Shows the frame, not more often than the display does.
   void show();
   void toggle_full_screen();
 
@@ -46,7 +47,7 @@ class Window : public GlContext {
   int framebuffer_width() const { return framebuffer_width_; }
   int framebuffer_height() const { return framebuffer_height_; }
   bool minimised() const;
-  /// 1 at 96 dots per inch.
+  /// The scale of the display, 1 at 96 dots per inch.
   float content_scale() const;
   double seconds() const;  ///< since the window opened
   void set_clipboard(const std::string& text);

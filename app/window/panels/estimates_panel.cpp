@@ -1,4 +1,4 @@
-// What the newest steps say about their own errors.
+// The panel of the errors that the newest steps estimate of themselves.
 #include "app/window/estimates.h"
 #include "app/window/panels/hover.h"
 #include "app/window/panels/panel.h"
@@ -20,6 +20,8 @@ void draw_estimates_line(const PanelContext& context) {
   const Parameters& parameters = context.state.parameters;
   const std::string text = estimates_in_short(*report, parameters);
   ImGui::TextDisabled("%s", text.empty() ? "step refused" : shown(text).c_str());
+
+  // The tooltip has all estimates with their units.
   std::string all;
   for (const Estimate& e : estimates(*report, parameters))
     all += (all.empty() ? "" : "\n") + std::string(e.name) + ": " + e.value;

@@ -1,4 +1,5 @@
-// A failure is explained in a sentence, shown on the mesh, and comes with what can be done.
+// The panel of a failure: it is explained in a sentence, shown on the mesh, and comes with
+// remedies.
 #include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
@@ -24,11 +25,13 @@ std::string pair_text(const OffendingPair& pair) {
   return "vertex " + v(0) + " with face " + v(1) + "-" + v(2) + "-" + v(3);
 }
 
+/// Lists the pairs behind the failure, those of the start or those of the step.
 void draw_pairs(const PanelContext& context) {
   const auto& start = context.start_intersections;
   const auto& offending = context.state.report.offending;
   const std::size_t count = start.empty() ? offending.size() : start.size();
   if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
+
   const float line = ImGui::GetTextLineHeightWithSpacing();
   ImGui::BeginChild("##list", {0, line * static_cast<float>(std::min<std::size_t>(count, 6))});
   for (std::size_t k = 0; k < std::min(count, kMaxListed); ++k) {
@@ -37,15 +40,20 @@ void draw_pairs(const PanelContext& context) {
                                                  face_text(context.world, start[k].b);
     ImGui::BulletText("%s", text.c_str());
   }
+
   if (count > kMaxListed) ImGui::TextDisabled("and %zu more", count - kMaxListed);
   ImGui::EndChild();
   ImGui::TreePop();
 }
 
+/// Draws the remedies, of which an invalid start has none but looking at it.
 void draw_buttons(PanelContext& context) {
   if (ImGui::Button("Show")) context.ui.show_failure = true;
+
   if (!context.start_intersections.empty()) return;
   ImGui::SameLine();
+
+  // Half the time step, applied at once, and the session goes on.
   if (ImGui::Button("Smaller step and go on")) {
     const ParameterInfo& step = *find_parameter("step.time_step");
     context.edits.set(step, context.edits.value(step) / 2);
@@ -63,6 +71,8 @@ void draw_buttons(PanelContext& context) {
 void draw_failure(PanelContext& context, const Rect& view) {
   if (!context.state.failed) return;
   const float width = std::min(560 * context.scale, view.width - 32 * context.scale);
+
+  // The panel stands at the top of the view, in the middle.
   ImGui::SetNextWindowPos({view.x + (view.width - width) / 2, view.y + 16 * context.scale});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
@@ -71,14 +81,19 @@ void draw_failure(PanelContext& context, const Rect& view) {
   ImGui::Begin("##failure", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+
+  // It says what is wrong, and why.
   ImGui::TextColored(vec4(colour::kBad), "%s",
                      context.start_intersections.empty() ? "The step was not accepted"
                                                          : "The start state is not valid");
   ImGui::PushTextWrapPos();
   ImGui::TextUnformatted(shown(context.state.failure).c_str());
   ImGui::PopTextWrapPos();
+
   draw_pairs(context);
   draw_buttons(context);
+
+  // Clicks on it are not meant for the scene.
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   context.ui.overlays.push_back({at.x, at.y, size.x, size.y});
   ImGui::End();

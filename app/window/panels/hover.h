@@ -5,8 +5,8 @@
 
 namespace icloth {
 
-/// While the mouse is over the item drawn last, a box with what `draw` draws, its lines as wide as
-/// reads well.
+/// While the mouse is over the item drawn last, shows a box with what `draw` draws, its lines as
+/// wide as reads well.
 template <class Draw>
 void over_item(const Draw& draw) {
   if (!ImGui::IsItemHovered()) return;

@@ -1,5 +1,5 @@
-// What the panels see and what they may ask for. Each panel is one function that draws itself
-// into the current ImGui frame.
+// The view that panels have of the program, and the requests that they may make. Each panel is one
+// function that draws itself into the current ImGui frame.
 #pragma once
 
 #include <imgui.h>
@@ -17,7 +17,7 @@
 
 namespace icloth {
 
-/// Place on the window [logical pixels].
+/// A place on the window [logical pixels].
 struct Rect {
   float x = 0, y = 0, width = 0, height = 0;
   bool contains(double px, double py) const {
@@ -25,7 +25,7 @@ struct Rect {
   }
 };
 
-/// What the user arranged, and what a panel asks the viewer to do.
+/// The arrangement that the user chose, and the requests of the panels to the viewer.
 struct UiState {
   bool panels = true, help = false;
   ViewMode view = ViewMode::shaded;
@@ -39,6 +39,7 @@ struct UiState {
   std::vector<Rect> overlays;  ///< floating panels of this frame: clicks there are theirs
 };
 
+/// The parts of the program that panels read and change.
 struct PanelContext {
   Session& session;
   const PublishedState& state;
@@ -62,23 +63,25 @@ struct StatusFigures {
 
 inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1
 
-/// Collisions that the newest step left, or pairs of faces that cross at the start.
+/// The number of collisions that the newest step left, or of pairs of faces that cross at the
+/// start.
 long long penetrations(const PanelContext& context);
 
-/// The column on the left: transport, stage plot, then tabs of parameters and statistics.
+/// Draws the column on the left: transport, stage plot, then tabs of parameters and statistics.
 void draw_side_panel(PanelContext& context, const Rect& place);
 void draw_transport(PanelContext& context);
 void draw_stage_plot(PanelContext& context);
 void draw_parameters(PanelContext& context);
 void draw_statistics(PanelContext& context);
-/// One line about the errors of the newest step, and the rows of a table about those of a step.
+/// Draw one line about the errors of the newest step, and the rows of a table about those of a
+/// step.
 void draw_estimates_line(const PanelContext& context);
 void draw_estimates(const StepReport& report, const Parameters& parameters);
-/// Hint line and status line along the bottom; the penetration counter is always there.
+/// Draws hint line and status line along the bottom; the penetration counter is always there.
 void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place);
-/// Says why nothing goes on, over the top of the view; nothing when all is well.
+/// Says why nothing goes on, over the top of the view; draws nothing when all is well.
 void draw_failure(PanelContext& context, const Rect& view);
-/// The table of keys over the middle of the view.
+/// Draws the table of keys over the middle of the view.
 void draw_help(PanelContext& context, const Rect& view);
 
 }  // namespace icloth

@@ -1,4 +1,5 @@
-// Sliders made from the table of parameters: unit, range, scale and tooltips come from there.
+// The panel of parameters. Its sliders are made from the table of parameters, which gives unit,
+// range, scale and tooltips.
 #include <cstdio>
 
 #include "app/window/panels/hover.h"
@@ -20,6 +21,7 @@ bool open_at_first(const std::string& group) {
          group == "impact_zones";
 }
 
+/// The group's name as a heading: "impact_zones" becomes "Impact zones".
 std::string heading(const std::string& group) {
   std::string text = group;
   for (char& c : text) {
@@ -35,6 +37,8 @@ std::string number(double value) {
   return text;
 }
 
+/// Shows the tooltip of a parameter: its name, the effect of either direction, its range and
+/// source.
 void explain(const ParameterInfo& info, const ParameterEdits& edits) {
   over_item([&] {
     const std::string unit = info.unit.empty() ? "" : " " + std::string(info.unit);
@@ -42,10 +46,13 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
     ImGui::TextDisabled("%s", std::string(info.name).c_str());
     ImGui::Text("%s", shown("lower: " + std::string(info.lower)).c_str());
     ImGui::Text("%s", shown("higher: " + std::string(info.higher)).c_str());
+
+    // The range and the scene's own value.
     ImGui::TextDisabled(
         "%s", shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
                     ", in this scene " + number(edits.start_value(info)) + unit)
                   .c_str());
+
     if (!info.only_with.empty())
       ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
     ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
@@ -53,7 +60,7 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
   });
 }
 
-/// The menu of a right click.
+/// Offers reset and copying in the menu of a right click.
 void offer_reset(const ParameterInfo& info, ParameterEdits& edits) {
   if (!ImGui::BeginPopupContextItem("##menu")) return;
   const std::string back = "Reset to " + number(edits.start_value(info));
@@ -65,10 +72,13 @@ void offer_reset(const ParameterInfo& info, ParameterEdits& edits) {
   ImGui::EndPopup();
 }
 
+/// A slider with the parameter's range, scale and unit. True when it moved.
 bool edit_number(const ParameterInfo& info, double& value) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   std::string format = info.unit.empty() ? "" : " " + shown(info.unit);
+
+  // Whole numbers have a slider of their own.
   if (info.field.kind == ParameterInfo::Kind::whole) {
     format = "%d" + format;
     int whole = static_cast<int>(value);
@@ -77,11 +87,13 @@ bool edit_number(const ParameterInfo& info, double& value) {
     value = whole;
     return moved;
   }
+
   format = (info.maximum < 1 && !info.logarithmic ? "%.5f" : "%.4g") + format;
   return ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &info.minimum, &info.maximum,
                              format.c_str(), flags);
 }
 
+/// A list of names. True when another one was chosen.
 bool edit_choice(std::span<const std::string_view> choices, double& value) {
   bool moved = false;
   if (!ImGui::BeginCombo("##value", std::string(choices[static_cast<std::size_t>(value)]).c_str()))
@@ -96,17 +108,23 @@ bool edit_choice(std::span<const std::string_view> choices, double& value) {
   return moved;
 }
 
+/// Draws the name and the control of one parameter.
 void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   ImGui::PushID(info.name.data());
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::AlignTextToFramePadding();
+
+  // The name is lit where the value is not the scene's.
   const bool changed = edits.changed(info);
   ImGui::TextColored(vec4(changed ? colour::kChanged : colour::kText), "%s",
                      shown(info.label).c_str());
   explain(info, edits);
+
   ImGui::TableNextColumn();
   ImGui::SetNextItemWidth(-1);
+
+  // The control follows the kind of the parameter; one that has no effect now is disabled.
   double value = edits.value(info);
   bool moved = false;
   ImGui::BeginDisabled(!parameter_used(edits.values(), info));
@@ -120,11 +138,15 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
     moved = edit_number(info, value);
   }
   ImGui::EndDisabled();
+
+  // A slider that is held makes one change, however often it moves.
   if (ImGui::IsItemActivated()) held = false;
   if (moved) {
     edits.set(info, value, held);
     held = true;
   }
+
+  // The tooltip would cover a slider that is being dragged.
   if (!ImGui::IsItemActive()) explain(info, edits);
   offer_reset(info, edits);
   ImGui::PopID();
@@ -138,18 +160,21 @@ void explain_preset(const Preset& preset) {
   });
 }
 
-/// Buttons that set several parameters at once; the one in force is lit.
+/// Draws buttons that set several parameters at once; the one in force is lit.
 void draw_presets(ParameterEdits& edits) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto count = static_cast<float>(presets().size());
   const float width = (ImGui::GetContentRegionAvail().x - (count - 1) * gap) / count;
   for (const Preset& preset : presets()) {
     if (&preset != &presets().front()) ImGui::SameLine();
+
     const bool on = is_set(edits.values(), preset);
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, colour::kLit);
     const bool pressed = ImGui::Button(std::string(preset.label).c_str(), {width, 0});
     if (on) ImGui::PopStyleColor();
     explain_preset(preset);
+
+    // A preset is one change, which one undo takes back.
     if (!pressed) continue;
     Parameters wanted = edits.values();
     apply_preset(wanted, preset);
@@ -162,6 +187,8 @@ void draw_presets(ParameterEdits& edits) {
 void draw_parameters(PanelContext& context) {
   draw_presets(context.edits);
   const auto table = parameter_table();
+
+  // Neighbours in the table with one group share a heading, which counts the changes below it.
   for (std::size_t k = 0; k < table.size();) {
     const std::string group = group_of(table[k]);
     std::size_t end = k;
@@ -169,11 +196,13 @@ void draw_parameters(PanelContext& context) {
     for (; end < table.size() && group_of(table[end]) == group; ++end) {
       changed += context.edits.changed(table[end]);
     }
+
     const std::string text = heading(group) +
                              (changed ? "  (" + std::to_string(changed) + " changed)" : "") +
                              "###" + group;
     const ImGuiTreeNodeFlags flags =
         open_at_first(group) ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+
     if (ImGui::CollapsingHeader(text.c_str(), flags) && ImGui::BeginTable("##rows", 2)) {
       ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch, 0.54f);
       ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.46f);

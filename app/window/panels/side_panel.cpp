@@ -1,4 +1,4 @@
-// The column on the left, its transport buttons and its tabs.
+// The column on the left, with its transport buttons and tabs.
 #include <cstdio>
 
 #include "app/window/panels/panel.h"
@@ -19,8 +19,10 @@ void tooltip(const char* text) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
+/// Draws the slider of earlier states.
 void draw_history(PanelContext& context) {
   const int count = static_cast<int>(context.state.history);
+
   int& back = context.ui.history_back;
   char label[96];
   if (back) {
@@ -28,6 +30,8 @@ void draw_history(PanelContext& context) {
   } else {
     std::snprintf(label, sizeof label, "history: %d steps", count);
   }
+
+  // The right end is the present; the label tells how far back the slider is.
   ImGui::SetNextItemWidth(-1);
   ImGui::BeginDisabled(count == 0);
   int position = count - back;
@@ -35,6 +39,8 @@ void draw_history(PanelContext& context) {
     back = count - position;
   }
   tooltip("Drag to the left and let go: go back to an earlier state and on from there.");
+
+  // Letting go is the moment to go back.
   if (ImGui::IsItemDeactivated()) {
     if (back > 0) context.session.step_back(static_cast<std::size_t>(back));
     back = 0;
@@ -46,6 +52,8 @@ void draw_history(PanelContext& context) {
 
 void draw_transport(PanelContext& context) {
   const PublishedState& state = context.state;
+
+  // Four buttons share the width.
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
   if (wide_button(state.playing ? "Pause" : "Play", width, state.playing ? 0 : colour::kLit)) {
@@ -61,7 +69,10 @@ void draw_transport(PanelContext& context) {
   ImGui::SameLine();
   if (wide_button("Reset", width)) context.session.reset();
   tooltip("R: to the start state, parameters stay");
+
   draw_history(context);
+
+  // The options of the run; a script is offered only where the scene has one.
   bool real_time = state.real_time, scripted = state.scripted;
   if (ImGui::Checkbox("Real time", &real_time)) context.session.set_real_time(real_time);
   tooltip("On: never faster than the clock. Off: as fast as the solver goes.");
@@ -72,11 +83,14 @@ void draw_transport(PanelContext& context) {
 }
 
 void draw_side_panel(PanelContext& context, const Rect& place) {
+  // The column has no decoration of its own.
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
   ImGui::Begin("##side", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+
+  // The scene's name on the left, the clock on the right.
   ImGui::TextUnformatted(context.scene.name.c_str());
   char clock[64];
   std::snprintf(clock, sizeof clock, "%.2f s   step %lld", context.state.time,
@@ -84,10 +98,13 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
   ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(clock).x -
                   ImGui::GetStyle().WindowPadding.x);
   ImGui::TextDisabled("%s", clock);
+
+  // The parts from top to bottom, of which the tabs take the rest.
   draw_transport(context);
   ImGui::Spacing();
   draw_stage_plot(context);
   ImGui::Spacing();
+
   if (ImGui::BeginTabBar("##tabs")) {
     if (ImGui::BeginTabItem("Parameters")) {
       ImGui::BeginChild("##parameters");
@@ -103,6 +120,7 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
     }
     ImGui::EndTabBar();
   }
+
   ImGui::End();
 }
 

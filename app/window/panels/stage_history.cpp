@@ -37,6 +37,7 @@ const StepReport* StageHistory::find(std::int64_t step) const {
 }
 
 double StageHistory::scale_ms() const {
+  // The slowest steps are left out of the scale, so that one hiccup does not flatten the others.
   if (reports_.empty()) return 1;
   std::vector<double> totals;
   for (const StepReport& report : reports_) totals.push_back(report.ms_total);

@@ -19,18 +19,19 @@ struct Stage {
 };
 std::span<const Stage> stages();
 
+/// Keeps the reports of the last steps.
 class StageHistory {
  public:
   static constexpr std::size_t kLength = 120;
 
-  /// Reports of a state that was left by going back are dropped.
+  /// Adds reports. Those of states that were left by going back are dropped.
   void add(std::vector<StepReport> reports);
   const std::deque<StepReport>& reports() const { return reports_; }
   const StepReport* newest() const { return reports_.empty() ? nullptr : &reports_.back(); }
   const StepReport* find(std::int64_t step) const;
-  /// Height of the tallest bar, without the one slowest step in fifty [ms].
+  /// The height of the tallest bar, without the one slowest step in fifty [ms].
   double scale_ms() const;
-  /// Mean over the history [ms].
+  /// The mean over the history [ms].
   double mean(double StepReport::*member) const;
   /// Drops the reports of steps after `step`.
   void cut(std::int64_t step);

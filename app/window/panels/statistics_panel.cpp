@@ -1,4 +1,4 @@
-// Where the time goes and what the step found.
+// The panel of statistics: the time of each stage, and the counts of the step.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,12 +10,13 @@ namespace icloth {
 
 namespace {
 
-/// The report that the figures are about: the clicked one while it is in the history.
+/// The report that the numbers are about: the clicked one while it is in the history.
 const StepReport* chosen(const PanelContext& context) {
   if (const StepReport* report = context.stages.find(context.ui.chosen_step)) return report;
   return context.stages.newest();
 }
 
+/// Draws the stages of one step as a stacked bar, cut off at the top.
 void draw_bar(ImDrawList& list, const StepReport& report, ImVec2 foot, float width, float height,
               double scale) {
   float y = foot.y;
@@ -38,6 +39,7 @@ void bar_tooltip(const StepReport& report) {
   ImGui::EndTooltip();
 }
 
+/// Draws the colours and names of the stages in two columns, with their mean times.
 void draw_stage_legend(PanelContext& context) {
   const float column = ImGui::GetContentRegionAvail().x / 2;
   const float left = ImGui::GetCursorPosX();
@@ -46,6 +48,8 @@ void draw_stage_legend(PanelContext& context) {
     if (k % 2 == 1) ImGui::SameLine(left + column);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFontSize();
+
+    // A small square in the stage's colour.
     ImGui::GetWindowDrawList()->AddRectFilled(
         {at.x, at.y + size * 0.25f}, {at.x + size * 0.6f, at.y + size * 0.85f}, stage.colour, 2);
     ImGui::Dummy({size * 0.6f, size});
@@ -55,6 +59,7 @@ void draw_stage_legend(PanelContext& context) {
   }
 }
 
+/// Draws one row of a table.
 void row(const char* name, const char* format, auto... values) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -92,9 +97,10 @@ void draw_quantities(const StepReport& r) {
   row("smallest gap", "%.3f mm", 1000 * r.min_gap);
 }
 
-/// One line over the history on a logarithmic axis; zeros are left out.
+/// Draws one line over the history on a logarithmic axis; zeros are left out.
 void draw_log_line(const PanelContext& context, const char* name,
                    double (*value)(const StepReport&), ImU32 tint) {
+  // The axis covers whole powers of ten, at least one.
   double low = 1e300, high = 0;
   for (const StepReport& report : context.stages.reports()) {
     const double v = value(report);
@@ -105,12 +111,16 @@ void draw_log_line(const PanelContext& context, const char* name,
   if (high <= 0) return;
   low = std::pow(10, std::floor(std::log10(low)));
   high = std::max(std::pow(10, std::ceil(std::log10(high))), 10 * low);
+
+  // The name and the range stand above the plot.
   ImGui::TextDisabled("%s  %.0e to %.0e", name, low, high);
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 44 * context.scale};
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::Dummy(size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, colour::kWell, 3);
+
+  // The newest step is at the right end. A zero interrupts the line.
   const float step = size.x / static_cast<float>(StageHistory::kLength);
   float x = at.x + size.x - step * static_cast<float>(context.stages.reports().size());
   ImVec2 last{};
@@ -133,6 +143,8 @@ void draw_log_line(const PanelContext& context, const char* name,
 void draw_stage_plot(PanelContext& context) {
   const StageHistory& history = context.stages;
   const double scale = history.scale_ms();
+
+  // The speed is above the plot, and the error estimates follow.
   ImGui::Text("%.1f steps/s", context.state.steps_per_second);
   char text[48];
   std::snprintf(text, sizeof text, "%.2f ms a step", history.mean(&StepReport::ms_total));
@@ -140,12 +152,16 @@ void draw_stage_plot(PanelContext& context) {
                   ImGui::GetStyle().WindowPadding.x);
   ImGui::TextDisabled("%s", text);
   draw_estimates_line(context);
+
+  // The plot itself is one button, so that a click can choose a bar.
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 84 * context.scale};
   const float bars = size.y - ImGui::GetTextLineHeight() - 4;  // under the label
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::InvisibleButton("##stages", size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, colour::kWell, 3);
+
+  // Each bar is a step, the newest at the right end. The hovered and the chosen one are lit.
   const float width = size.x / static_cast<float>(StageHistory::kLength);
   float x = at.x + size.x - width * static_cast<float>(history.reports().size());
   const float mouse = ImGui::GetIO().MousePos.x;
@@ -156,11 +172,15 @@ void draw_stage_plot(PanelContext& context) {
     }
     draw_bar(list, report, {x, at.y + size.y}, std::max(1.0f, width - 0.5f), bars, scale);
     if (hovered) bar_tooltip(report);
+
+    // A second click on the chosen bar goes back to the newest step.
     if (hovered && clicked) {
       context.ui.chosen_step = context.ui.chosen_step == report.step ? -1 : report.step;
     }
     x += width;
   }
+
+  // The scale and the legend.
   std::snprintf(text, sizeof text, "%.3g ms", scale);
   list.AddText({at.x + 5, at.y + 2}, colour::kDim, text);
   draw_stage_legend(context);
@@ -169,23 +189,29 @@ void draw_stage_plot(PanelContext& context) {
 void draw_statistics(PanelContext& context) {
   const StepReport* report = chosen(context);
   if (!report) return ImGui::TextDisabled("No step was made yet.");
+
+  // A chosen step is named, with the way back to the newest one.
   if (report->step == context.ui.chosen_step) {
     ImGui::TextColored(vec4(colour::kAccent), "step %lld", static_cast<Count>(report->step));
     ImGui::SameLine();
     if (ImGui::SmallButton("newest")) context.ui.chosen_step = -1;
   }
+
   const ImGuiTableFlags flags = ImGuiTableFlags_RowBg;
   ImGui::TextUnformatted("Error estimates");
   if (ImGui::BeginTable("##estimates", 2, flags)) {
     draw_estimates(*report, context.state.parameters);
     ImGui::EndTable();
   }
+
   ImGui::TextUnformatted("Counts and quantities");
   if (ImGui::BeginTable("##figures", 2, flags)) {
     draw_counts(*report);
     draw_quantities(*report);
     ImGui::EndTable();
   }
+
+  // The history of four numbers that tell how the run goes.
   ImGui::Spacing();
   draw_log_line(
       context, "CG residual", [](const StepReport& r) { return r.cg_residual; }, colour::kAccent);

@@ -1,4 +1,4 @@
-// The two lines along the bottom: what can be done now, and how it goes.
+// The two lines along the bottom: hints for the present actions, and the state of the run.
 #include <cstdio>
 
 #include "app/window/bindings.h"
@@ -11,16 +11,19 @@ namespace {
 
 constexpr double kLongStep = 1.5;  ///< [s]
 
+/// Draws a text behind the one before it.
 void item(const char* text, ImU32 tint = colour::kText) {
   ImGui::SameLine(0, ImGui::GetFontSize() * 1.3f);
   ImGui::TextColored(vec4(tint), "%s", text);
 }
 
-/// Always visible, also when the panels are hidden.
+/// Draws the number of penetrations. It is always visible, also when the panels are hidden.
 void draw_penetrations(const PanelContext& context) {
   char text[48];
   const long long left = penetrations(context);
   std::snprintf(text, sizeof text, "penetrations %lld", left);
+
+  // A round light shows at a glance whether there are any.
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = ImGui::GetFontSize() * 0.3f;
   const ImU32 tint = left == 0 ? colour::kGood : colour::kBad;
@@ -49,6 +52,7 @@ long long penetrations(const PanelContext& context) {
 }
 
 void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place) {
+  // The bar has its own colour and no decoration.
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::kBar);
@@ -58,13 +62,19 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
+
+  // The first line tells what can be done, or the last message.
   if (figures.note.empty()) {
     ImGui::TextDisabled("%s", hint_line(context.drag.grabbing()).c_str());
   } else {
     ImGui::TextColored(vec4(colour::kAccent), "%s", figures.note.c_str());
   }
+
+  // The second line begins with the most important number.
   draw_penetrations(context);
   item(figures.device.c_str());
+
+  // A step that takes long is told as such, so that the window does not seem to hang.
   char text[64];
   const double busy = context.session.step_seconds();
   if (busy > kLongStep) {
@@ -75,12 +85,16 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
     item(context.state.playing ? text : "paused",
          context.state.playing ? colour::kText : colour::kChanged);
   }
+
+  // The rest describes the drawing.
   std::snprintf(text, sizeof text, "window %.0f fps", figures.ui_fps);
   item(text);
   item((thousands(context.world.cloth_faces) + " triangles").c_str());
   const std::string vertices = "vertices by " + figures.upload_path;
   item(vertices.c_str(), colour::kDim);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", vertices.c_str());  // it may be cut off
+
+  // The last item may be cut off, so its text is also a tooltip.
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", vertices.c_str());
   ImGui::End();
 }
 
