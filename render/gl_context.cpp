@@ -37,7 +37,7 @@ std::string gl_renderer() { return gl_text(GL_RENDERER) + ", OpenGL " + gl_text(
 
 bool gl_is_software() {
   const std::string renderer = gl_text(GL_RENDERER);
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software"})
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"})
     if (renderer.find(name) != std::string::npos) return true;
   return false;
 }

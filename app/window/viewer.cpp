@@ -18,13 +18,6 @@ constexpr double kStrainRange = 0.1;
 constexpr double kRestSeconds = 0.3, kLongestPause = 0.2, kMovingSharpness = 0.5;
 constexpr Index kGraspSamples = 97;
 
-bool is_software(const std::string& renderer) {
-  for (const char* name : {"llvmpipe", "softpipe", "SwiftShader"}) {
-    if (renderer.find(name) != std::string::npos) return true;
-  }
-  return false;
-}
-
 /// The number of threads of the solver. Software rendering needs a core for itself; a graphics card
 /// does not.
 int solver_threads(int asked, bool software) {
@@ -61,7 +54,7 @@ Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
       window_("icloth - " + scene_->name, options.width, options.height),
       ui_(window_),
       renderer_(world_, {.on_device = options.vertices != "host"}),
-      software_(is_software(gl_renderer())),
+      software_(gl_is_software()),
       threads_(solver_threads(options.threads, software_)),
       edits_(scene_->parameters) {
   // The parts follow the machine, then the scene and the options.
@@ -162,7 +155,7 @@ void Viewer::draw_panels() {
   PanelContext context{*session_, session_->state(),    edits_, stages_, drag_, *scene_,
                        world_,    start_intersections_, state_, scale};
   if (state_.panels) draw_side_panel(context, {0, 0, side, high - bar});
-  draw_status_bar(context, figures(), {0, high - bar, wide, bar});
+  draw_status_bar(context, status_texts(), {0, high - bar, wide, bar});
   draw_failure(context, view_);
   draw_help(context, view_);
   draw_menu();
@@ -337,16 +330,16 @@ std::string Viewer::free_name(const char* stem, const char* extension) const {
 }
 
 /// The texts of the status bar.
-StatusFigures Viewer::figures() const {
-  StatusFigures figures;
-  figures.device = std::string(build_name(options_.build));
+StatusTexts Viewer::status_texts() const {
+  StatusTexts texts;
+  texts.device = std::string(build_name(options_.build));
   if (options_.build != Build::cuda32) {
-    figures.device += threads_ == 1 ? ", 1 thread" : ", " + std::to_string(threads_) + " threads";
+    texts.device += threads_ == 1 ? ", 1 thread" : ", " + std::to_string(threads_) + " threads";
   }
-  figures.upload_path = renderer_.upload_path();
-  figures.ui_fps = static_cast<double>(frame_times_.size());
-  if (window_.seconds() < note_end_) figures.note = note_;
-  return figures;
+  texts.upload_path = renderer_.upload_path();
+  texts.ui_fps = static_cast<double>(frame_times_.size());
+  if (window_.seconds() < note_end_) texts.note = note_;
+  return texts;
 }
 
 /// A point of the cloth that is in view and that nothing hides, for tests. Of some faces it is the

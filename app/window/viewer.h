@@ -83,7 +83,7 @@ class Viewer {
   void tell(const std::string& note);
   std::string free_name(const char* stem, const char* extension) const;
   std::optional<Vec3d> graspable_point() const;
-  StatusFigures figures() const;
+  StatusTexts status_texts() const;
   TestStatus test_status() const;
 
   ViewOptions options_;

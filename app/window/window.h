@@ -62,7 +62,6 @@ class Window : public GlContext {
   GLFWwindow* window_ = nullptr;
   std::vector<WindowEvent> events_;
   double x_ = 0, y_ = 0;
-  int modifiers_ = 0;
   int width_ = 0, height_ = 0, framebuffer_width_ = 0, framebuffer_height_ = 0;
   int restore_[4] = {0, 0, 0, 0};                      ///< place and size before full screen
   double frame_interval_ = 1.0 / 60, next_frame_ = 0;  ///< [s]

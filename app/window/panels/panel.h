@@ -35,7 +35,6 @@ struct UiState {
 
   bool show_failure = false;  ///< asked for: look at the offending faces
   bool save_session = false;  ///< asked for: write the recording
-  bool frame_all = false;
   std::vector<Rect> overlays;  ///< floating panels of this frame: clicks there are theirs
 };
 
@@ -53,8 +52,8 @@ struct PanelContext {
   float scale = 1;
 };
 
-/// Figures of the status bar that come from the program around the panels.
-struct StatusFigures {
+/// Texts of the status bar that come from the program around the panels.
+struct StatusTexts {
   std::string device;       ///< "cpu32, 3 threads"
   std::string upload_path;  ///< "host copy (built without CUDA)"
   double ui_fps = 0;
@@ -78,7 +77,7 @@ void draw_statistics(PanelContext& context);
 void draw_estimates_line(const PanelContext& context);
 void draw_estimates(const StepReport& report, const Parameters& parameters);
 /// Draws hint line and status line along the bottom; the penetration counter is always there.
-void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place);
+void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect& place);
 /// Says why nothing goes on, over the top of the view; draws nothing when all is well.
 void draw_failure(PanelContext& context, const Rect& view);
 /// Draws the table of keys over the middle of the view.

@@ -205,7 +205,7 @@ void draw_statistics(PanelContext& context) {
   }
 
   ImGui::TextUnformatted("Counts and quantities");
-  if (ImGui::BeginTable("##figures", 2, flags)) {
+  if (ImGui::BeginTable("##counts", 2, flags)) {
     draw_counts(*report);
     draw_quantities(*report);
     ImGui::EndTable();

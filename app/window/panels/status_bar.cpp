@@ -51,7 +51,7 @@ long long penetrations(const PanelContext& context) {
          static_cast<long long>(context.state.report.impacts_left);
 }
 
-void draw_status_bar(PanelContext& context, const StatusFigures& figures, const Rect& place) {
+void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect& place) {
   // The bar has its own colour and no decoration.
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
@@ -64,15 +64,15 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
   ImGui::PopStyleColor();
 
   // The first line tells what can be done, or the last message.
-  if (figures.note.empty()) {
+  if (texts.note.empty()) {
     ImGui::TextDisabled("%s", hint_line(context.drag.grabbing()).c_str());
   } else {
-    ImGui::TextColored(vec4(colour::kAccent), "%s", figures.note.c_str());
+    ImGui::TextColored(vec4(colour::kAccent), "%s", texts.note.c_str());
   }
 
   // The second line begins with the most important number.
   draw_penetrations(context);
-  item(figures.device.c_str());
+  item(texts.device.c_str());
 
   // A step that takes long is told as such, so that the window does not seem to hang.
   char text[64];
@@ -87,10 +87,10 @@ void draw_status_bar(PanelContext& context, const StatusFigures& figures, const 
   }
 
   // The rest describes the drawing.
-  std::snprintf(text, sizeof text, "window %.0f fps", figures.ui_fps);
+  std::snprintf(text, sizeof text, "window %.0f fps", texts.ui_fps);
   item(text);
   item((thousands(context.world.cloth_faces) + " triangles").c_str());
-  const std::string vertices = "vertices by " + figures.upload_path;
+  const std::string vertices = "vertices by " + texts.upload_path;
   item(vertices.c_str(), colour::kDim);
 
   // The last item may be cut off, so its text is also a tooltip.
