@@ -21,6 +21,7 @@
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
+#include "sim/scene/scene_io.h"
 
 namespace icloth {
 namespace {
@@ -37,8 +38,8 @@ int print_keys() {
 struct Commands {
   CLI::App app{"icloth: interactive cloth simulation", "icloth"};
   std::function<int()> chosen;
+  const SimulationOptions* simulation = nullptr;  ///< of the chosen command; null: it has none
 
-  SimulationOptions view_simulation, render_simulation;
   ViewOptions view;
   RunOptions run;
   RenderOptions render;
@@ -49,7 +50,8 @@ struct Commands {
   bool list_keys = false;
 
   Commands();
-  CLI::App* add_verb(const char* name, const char* what, std::function<int()> action);
+  CLI::App* add_verb(const char* name, const char* what, std::function<int()> action,
+                     const SimulationOptions* options = nullptr);
   void add_view();
   void add_run();
   void add_render();
@@ -58,34 +60,31 @@ struct Commands {
   void add_tests();
 };
 
-/// Adds a command whose action is run when the whole line has been read.
-CLI::App* Commands::add_verb(const char* name, const char* what, std::function<int()> action) {
+/// Adds a command whose action is run when the whole line has been read. `options` are those that
+/// add_simulation_options fills, where the command has them.
+CLI::App* Commands::add_verb(const char* name, const char* what, std::function<int()> action,
+                             const SimulationOptions* options) {
   CLI::App* verb = app.add_subcommand(name, what);
-  verb->callback([this, action = std::move(action)] { chosen = action; });
+  verb->callback([this, action = std::move(action), options] {
+    chosen = action;
+    simulation = options;
+  });
   return verb;
 }
 
 void Commands::add_view() {
-  CLI::App* verb = add_verb("view", "the window", [this] {
+  const auto action = [this] {
 #if defined(ICLOTH_HAS_WINDOW)
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
       throw DeviceError("there is no display; without one use 'icloth run' or 'icloth render'");
-    if (view_simulation.dump_config) {
-      run.simulation = view_simulation;
-      return run_run(run);
-    }
-    view.scene = view_simulation.scene;
-    view.overrides = scene_overrides(view_simulation);
-    view.threads = view_simulation.threads;
-    view.build = choose_build(view_simulation);
     return run_view(view);
 #else
     throw DeviceError("this program was built without the window (GLFW, Dear ImGui, OpenGL)");
     return 3;
 #endif
-  });
-
-  add_simulation_options(*verb, view_simulation, false);
+  };
+  CLI::App* verb = add_verb("view", "the window", action, &view.simulation);
+  add_simulation_options(*verb, view.simulation, false);
 
   verb->add_option("--record", view.record_file, "save the session as a recording at the end");
   verb->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
@@ -98,7 +97,8 @@ void Commands::add_view() {
 }
 
 void Commands::add_run() {
-  CLI::App* verb = add_verb("run", "headless simulation", [this] { return run_run(run); });
+  CLI::App* verb = add_verb(
+      "run", "headless simulation", [this] { return run_run(run); }, &run.simulation);
 
   // The length of the run and its scene are common to all commands that simulate.
   add_simulation_options(*verb, run.simulation, true);
@@ -118,31 +118,19 @@ void Commands::add_run() {
 }
 
 void Commands::add_render() {
-  CLI::App* verb = add_verb("render", "headless pictures and video", [this] {
+  const auto action = [this] {
 #if defined(ICLOTH_HAS_RENDER)
-    const SimulationOptions& common = render_simulation;
-    if (common.dump_config) {
-      run.simulation = common;
-      return run_run(run);
-    }
-    render.scene = common.scene;
-    render.overrides = scene_overrides(common);
-    render.threads = common.threads;
-    render.quiet = common.quiet;
-    render.steps = common.steps;
-    render.time = common.time;
-    render.build = choose_build(common);
     return run_render(render);
 #else
     throw DeviceError("this program was built without the renderer (OpenGL, EGL, glad)");
     return 3;
 #endif
-  });
-
-  add_simulation_options(*verb, render_simulation, true);
+  };
+  CLI::App* verb = add_verb("render", "headless pictures", action, &render.simulation);
+  add_simulation_options(*verb, render.simulation, true);
 
   // The picture itself: where it goes, and what it shows how well.
-  verb->add_option("--out", render.out, "FILE.png or FILE.mp4")->capture_default_str();
+  verb->add_option("--out", render.out, "FILE.png")->capture_default_str();
   verb->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
   verb->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
   verb->add_option("--view", render.view, "what is shown")->capture_default_str();
@@ -153,8 +141,6 @@ void Commands::add_render() {
                    "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
       ->check(CLI::IsMember({"auto", "interop", "host"}))
       ->capture_default_str();
-  verb->add_option("--fps", render.frame_rate, "frames a second of a video")
-      ->check(CLI::Range(1.0, 1000.0));
   verb->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
 }
 
@@ -229,6 +215,15 @@ void complete_verb(std::vector<std::string>& words) {
   words.insert(words.begin(), "view");
 }
 
+/// Prints all parameters of the scene as the options leave them.
+int dump_config(const SimulationOptions& options) {
+  const auto scene = load_scene(options.scene, scene_overrides(options));
+  if (std::printf("%s\n", dump_parameters(scene->parameters).c_str()) < 0 ||
+      std::fflush(stdout) != 0)
+    throw InputError("--dump-config: cannot be written to the end; is the disk full?");
+  return 0;
+}
+
 int run_words(std::vector<std::string> words) {
   if (!words.empty() && words.front() == "bench")
     return run_bench_program({words.begin() + 1, words.end()});
@@ -244,6 +239,10 @@ int run_words(std::vector<std::string> words) {
     if (error.get_exit_code() == 0) return commands.app.exit(error);
     throw InputError(first_line(error.what()) + " (see icloth --help)");
   }
+
+  // Every command that simulates can print its parameters instead.
+  if (commands.simulation && commands.simulation->dump_config)
+    return dump_config(*commands.simulation);
   return commands.chosen();
 }
 

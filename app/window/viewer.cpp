@@ -34,33 +34,35 @@ std::string start_sentence(std::size_t pairs) {
          "there: move the objects apart in the scene file, or repair the mesh.";
 }
 
-std::unique_ptr<Session> make_session(const ViewOptions& options,
+std::unique_ptr<Session> make_session(const SimulationOptions& options, Build build,
                                       const std::shared_ptr<const Scene>& scene,
                                       const std::string& refusal) {
   SessionOptions session;
   session.scene = scene->source.empty() ? options.scene : scene->source;
-  session.overrides = options.overrides;
+  session.overrides = scene_overrides(options);
   session.refusal = refusal;
-  return std::make_unique<Session>(make_simulator(options.build, scene), session);
+  return std::make_unique<Session>(make_simulator(build, scene), session);
 }
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene)
+Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene)
     : options_(options),
+      build_(build),
       scene_(std::move(scene)),
       world_(make_world(*scene_)),
-      start_intersections_(find_start_intersections(*scene_, options.build != Build::cpu64)),
+      start_intersections_(find_start_intersections(*scene_, build != Build::cpu64)),
       window_("icloth - " + scene_->name, options.width, options.height),
       ui_(window_),
       renderer_(world_, {.on_device = options.vertices != "host"}),
       software_(gl_is_software()),
-      threads_(solver_threads(options.threads, software_)),
+      threads_(solver_threads(options.simulation.threads, software_)),
       edits_(scene_->parameters) {
   // The parts follow the machine, then the scene and the options.
   set_thread_count(threads_);
   renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
-  session_ = make_session(options_, scene_, start_sentence(start_intersections_.size()));
+  session_ = make_session(options_.simulation, build_, scene_,
+                          start_sentence(start_intersections_.size()));
   if (!scene_->cameras.empty()) camera_ = Camera(scene_->cameras.front());
   if (options_.play_script) session_->set_scripted(true);
   if (options_.play) session_->play();
@@ -332,8 +334,8 @@ std::string Viewer::free_name(const char* stem, const char* extension) const {
 /// The texts of the status bar.
 StatusTexts Viewer::status_texts() const {
   StatusTexts texts;
-  texts.device = std::string(build_name(options_.build));
-  if (options_.build != Build::cuda32) {
+  texts.device = std::string(build_name(build_));
+  if (build_ != Build::cuda32) {
     texts.device += threads_ == 1 ? ", 1 thread" : ", " + std::to_string(threads_) + " threads";
   }
   texts.upload_path = renderer_.upload_path();

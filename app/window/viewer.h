@@ -30,8 +30,8 @@ namespace icloth {
 /// Owns the window, the renderer and the session, and connects them.
 class Viewer {
  public:
-  /// Opens the window and builds the solver. Throws DeviceError and InputError.
-  Viewer(const ViewOptions& options, std::shared_ptr<const Scene> scene);
+  /// Opens the window and makes the solver of a build. Throws DeviceError and InputError.
+  Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene);
 
   /// Runs until the window is closed. Writes the recording when the options ask for it.
   void run();
@@ -87,6 +87,7 @@ class Viewer {
   TestStatus test_status() const;
 
   ViewOptions options_;
+  Build build_;
   std::shared_ptr<const Scene> scene_;
   World world_;
   std::vector<IntersectingFaces> start_intersections_;

@@ -49,13 +49,13 @@ Quality parse_quality(const std::string& name) {
 
 /// The path by which vertices shall reach the GPU. Throws DeviceError when interop is demanded and
 /// cannot be had; needs a current context.
-VertexOptions choose_vertices(const RenderOptions& options) {
+VertexOptions choose_vertices(const RenderOptions& options, Build build) {
   if (options.vertices == "host") return {.on_device = false};
   if (options.vertices == "auto") return {};
   if (options.vertices != "interop")
     throw InputError("--vertices " + options.vertices + ": expected auto, interop or host");
   std::string reason = "the solver runs on the CPU";
-  if (options.build != Build::cuda32 || !interop_works(cuda_device(), reason))
+  if (build != Build::cuda32 || !interop_works(cuda_device(), reason))
     throw DeviceError("--vertices interop: " + reason);
   return {};
 }
@@ -63,7 +63,7 @@ VertexOptions choose_vertices(const RenderOptions& options) {
 void check_out(const std::string& out) {
   const std::filesystem::path path(out);
   if (path.extension() == ".mp4")
-    throw InputError("--out " + out + ": videos are not written yet, expected FILE.png");
+    throw InputError("--out " + out + ": videos are not supported, expected FILE.png");
   if (path.extension() != ".png") throw InputError("--out " + out + ": expected FILE.png");
   if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
     throw InputError("--out " + out + ": there is no folder '" + path.parent_path().string() + "'");
@@ -157,6 +157,8 @@ void mark_start_intersections(const Scene& scene, bool single_precision, const W
 
 int run_render(const RenderOptions& options) {
   // Options are checked before anything takes time.
+  const SimulationOptions& common = options.simulation;
+  const Build build = choose_build(common);
   const Size size = parse_size(options.size);
   const ViewMode view = parse_view_mode(options.view);
   const Quality quality = parse_quality(options.quality);
@@ -164,23 +166,20 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene = load_scene(options.scene, options.overrides);
+  job.scene = load_scene(common.scene, scene_overrides(common));
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);
   const std::unique_ptr<GlContext> context =
-      make_egl_context(options.build == Build::cuda32 ? cuda_device() : kNone);
-  Renderer renderer(world, choose_vertices(options));
+      make_egl_context(build == Build::cuda32 ? cuda_device() : kNone);
+  Renderer renderer(world, choose_vertices(options, build));
   renderer.set_quality(quality);
 
   // The length, the device and the outputs of the run.
-  SimulationOptions length;
-  length.steps = options.steps;
-  length.time = options.time;
-  job.steps = step_count(length, *job.scene);
-  job.build = options.build;
-  job.quiet = options.quiet;
-  set_thread_count(options.threads);
+  job.steps = step_count(common, *job.scene);
+  job.build = build;
+  job.quiet = common.quiet;
+  set_thread_count(common.threads);
   StatisticsFile stats(options.stats_file);
 
   // The last accepted state is kept for the picture; a refused one adds its offending faces.
@@ -197,7 +196,7 @@ int run_render(const RenderOptions& options) {
   const HeadlessResult result = run_headless(job);
   stats.finish(result.statistics);
   if (result.start_refused)
-    mark_start_intersections(*job.scene, options.build != Build::cpu64, world, shown);
+    mark_start_intersections(*job.scene, build != Build::cpu64, world, shown);
 
   // The picture shows that state.
   Frame frame;
@@ -213,11 +212,11 @@ int run_render(const RenderOptions& options) {
     throw DeviceError("--vertices interop: " + renderer.upload_path());
   write_png(options.out, image);
 
-  if (!options.quiet && !result.start_refused) {
+  if (!common.quiet && !result.start_refused) {
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
     std::printf("vertices by %s\n", renderer.upload_path().c_str());
   }
-  if (!options.quiet) std::printf("%s\n", options.out.c_str());
+  if (!common.quiet) std::printf("%s\n", options.out.c_str());
   return result.clean() ? 0 : 1;
 }
 

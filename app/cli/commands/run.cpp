@@ -91,10 +91,6 @@ int run_run(const RunOptions& options) {
   check(options);
   HeadlessJob job;
   job.scene = load_scene(common.scene, scene_overrides(common));
-  if (common.dump_config) {
-    std::printf("%s\n", dump_parameters(job.scene->parameters).c_str());
-    return 0;
-  }
 
   // The hands come from a recording or from the scene's script, and may be recorded again.
   Recording input, record;

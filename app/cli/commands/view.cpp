@@ -7,11 +7,13 @@
 namespace icloth {
 
 int run_view(const ViewOptions& options) {
+  const SimulationOptions& simulation = options.simulation;
+  const Build build = choose_build(simulation);
   std::string reason;
-  if (!build_available(options.build, &reason)) {
-    throw DeviceError(std::string(build_name(options.build)) + " is not available: " + reason);
-  }
-  Viewer viewer(options, load_scene(options.scene, options.overrides));
+  if (!build_available(build, &reason))
+    throw DeviceError(std::string(build_name(build)) + " is not available: " + reason);
+
+  Viewer viewer(options, build, load_scene(simulation.scene, scene_overrides(simulation)));
   viewer.run();
   return 0;
 }

@@ -201,6 +201,12 @@ TEST_F(Cli, DumpConfigShowsWhatIsInForce) {
   EXPECT_EQ(json["impact_zones.penalty"], 512);
   EXPECT_EQ(json["wind.x"], 3);
   EXPECT_EQ(json["step.time_step"], 0.005);  // the scene's own
+
+  // Every command that simulates prints the same, and needs no display for it.
+  for (const std::string command : {"view", "render"})
+    EXPECT_EQ(icloth(command + " sphere --set mu=512 --set wind.x=3 --dump-config").out,
+              outcome.out)
+        << command;
 }
 
 TEST_F(Cli, RunExportsFramesAndStatistics) {
