@@ -7,6 +7,7 @@
 namespace icloth {
 namespace {
 
+/// The options of the suites, of which some belong to a few suites only.
 void add_options(CLI::App& app, BenchOptions& bench) {
   app.add_option("SUITE", bench.suite, "quick, paper, accuracy, stability, validation or solver")
       ->capture_default_str();

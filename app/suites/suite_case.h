@@ -1,4 +1,4 @@
-// What the cases of the stability and the validation suite have in common.
+// Functions that the cases of the stability and of the validation suite share.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 
 namespace icloth {
 
-/// Notes what was required and is not so, each line once.
+/// Notes a requirement that does not hold, each line once.
 inline void note_failure(std::vector<std::string>& failures, bool holds, const std::string& what) {
   if (!holds && std::ranges::find(failures, what) == failures.end()) failures.push_back(what);
 }
 
-/// The result of a case, timed; anything that it throws is a failure.
+/// Runs a case. Its result is timed; anything that it throws is a failure.
 template <class Case, class Run>
 auto result_of(const Case& test, Run& run) {
   const auto begin = std::chrono::steady_clock::now();

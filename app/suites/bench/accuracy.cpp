@@ -14,8 +14,8 @@
 namespace icloth {
 namespace {
 
-// Damped a little: without any, waves as short as an edge ring for ever, each step length makes
-// other ones, and no two runs come together.
+// The scenes are damped a little. Without any damping, waves as short as an edge ring for ever,
+// each step length makes other ones, and no two runs come together.
 const std::string kDamping = "material.damping=0.002", kStep = "step.time_step=0.01";
 
 const TrialScene kScenes[] = {
@@ -33,19 +33,26 @@ struct Setting {
   bool precise = false;  ///< in double precision
 };
 
+/// The settings of the sweep, one knob after the other.
 std::vector<Setting> settings(const TrialScene& scene) {
+  // The scene's own setting comes first, since the others are measured against it.
   std::vector<Setting> list{{"as in the scene", "1/100 s", {}}};
   for (const Preset& preset : presets())
     list.push_back({"preset", std::string(preset.name), {"preset=" + std::string(preset.name)}});
+
   const auto add = [&](const char* knob, const char* parameter,
                        std::initializer_list<const char*> values) {
     for (const char* value : values)
       list.push_back({knob, value, {std::string(parameter) + "=" + value}});
   };
+
+  // The time step and the integrator.
   add("time step", "step.time_step", {"0.02", "0.005", "0.0025"});
   for (const char* dt : {"0.02", "0.01", "0.005", "0.0025"})
     list.push_back(
         {"BDF2, time step", dt, {std::string("step.time_step=") + dt, "implicit.integrator=bdf2"}});
+
+  // The solves of the implicit step.
   add("Newton iterations", "implicit.newton_iterations", {"1", "2", "3"});
   list.push_back({"Newton iterations",
                   "20, to 0.1 N/m",
@@ -53,10 +60,14 @@ std::vector<Setting> settings(const TrialScene& scene) {
   add("Newton tolerance", "implicit.newton_tolerance", {"0.5", "50"});
   add("CG tolerance", "implicit.cg_tolerance", {"0.1", "0.03", "0.01", "0.001", "0.0001"});
   add("preconditioner", "implicit.preconditioner", {"block_jacobi", "multilevel"});
+
+  // The handling of contacts.
   add("contact passes", "implicit.contact_passes", {"1", "2", "3"});
   add("contact tolerance", "implicit.contact_tolerance", {"0.1", "0.01", "0.0001"});
   add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});
   add("zone iterations", "impact_zones.iterations", {"10", "30", "1000"});
+
+  // Precision, thickness and mesh belong to the scene rather than to the solver.
   list.push_back({"precision", "f64", {}, true});
   const double thickness = trial_scene(scene, {})->parameters.proximity.thickness;
   for (const double factor : {0.5, 2.0})
@@ -70,7 +81,7 @@ std::vector<Setting> settings(const TrialScene& scene) {
   return list;
 }
 
-/// Combinations of the settings that matter most, with which the presets are picked.
+/// Combinations of the settings that matter most, from which the presets are picked.
 std::vector<Setting> combinations() {
   std::vector<Setting> list;
   for (const char* integrator : {"backward_euler", "bdf2"})
@@ -87,6 +98,7 @@ std::vector<Setting> combinations() {
   return list;
 }
 
+/// The settings of a reference: the second-order integrator, solved to many digits.
 std::vector<std::string> reference_settings(const char* time_step) {
   return {std::string("step.time_step=") + time_step,
           "implicit.integrator=bdf2",
@@ -98,6 +110,7 @@ std::vector<std::string> reference_settings(const char* time_step) {
           "implicit.contact_tolerance=1e-5"};
 }
 
+/// A setting, the run with it, and its distance from the reference.
 struct Point {
   Setting setting;
   Trial trial;
@@ -109,6 +122,7 @@ std::string percent(double share, int digits = 3) {
   return share < 0 ? "" : format_number(100 * share, digits);
 }
 
+/// The table of all points of a scene. `usual` is the time of the scene's own setting.
 Table table_of(const std::string& scene, const std::vector<Point>& points, double usual) {
   Table table("accuracy_" + scene, "Speed against error: " + scene,
               {"setting", "value", "s a simulated second", "times faster", "CG iterations a step",
@@ -126,12 +140,14 @@ Table table_of(const std::string& scene, const std::vector<Point>& points, doubl
   return table;
 }
 
-/// One series a knob; the front as a line of its own.
+/// Plots time against error, with one series a knob and the front as a line of its own.
 Plot plot_of(const std::string& scene, const std::vector<Point>& points, const char* what,
              double Errors::*error) {
   Plot plot{
       std::string(what) + ": " + scene, "seconds a simulated second", what, true, true, true, {}};
   Series front{"front", {}};
+
+  // Only the knobs that trade time for error are drawn.
   constexpr std::string_view kDrawn[] = {"time step", "BDF2, time step", "CG tolerance",
                                          "combination", "preset"};
   for (const Point& p : points) {
@@ -142,17 +158,20 @@ Plot plot_of(const std::string& scene, const std::vector<Point>& points, const c
       plot.series.push_back({p.setting.knob, {}, p.setting.knob != std::string("combination")});
     plot.series.back().points.push_back(point);
   }
+
   std::ranges::sort(front.points);
   plot.series.push_back(std::move(front));
   return plot;
 }
 
+/// Measures scene after scene and adds them to the report.
 class AccuracySuite {
  public:
   AccuracySuite(Build build, bool quiet, Report& report)
       : build_(build), quiet_(quiet), report_(report) {}
 
   void run(const TrialScene& scene) {
+    // The reference is compared with a coarser one, which tells what it can resolve.
     report_.heading(scene.name);
     const Trial reference = run_trial(scene, reference_settings("0.000625"), Build::cpu64);
     const Trial coarser = run_trial(scene, reference_settings("0.00125"), Build::cpu64);
@@ -162,9 +181,12 @@ class AccuracySuite {
                  format_number(1e3 * own.position, 3) + " mm, " + percent(own.energy) +
                  " % of the energy and " + percent(own.shadow) +
                  " % of the area away: errors below that are not resolved.");
+
+    // Every setting is measured against it, one by one and in the combinations.
     std::vector<Setting> list = settings(scene);
     for (Setting& s : combinations()) list.push_back(std::move(s));
     const std::vector<Point> points = measure(scene, list, reference);
+
     report_.add(table_of(scene.name, points, points[0].trial.seconds));
     report_.add(plot_of(scene.name, points, "position error [m]", &Errors::position));
     report_.add(plot_of(scene.name, points, "energy error", &Errors::energy));
@@ -182,6 +204,8 @@ class AccuracySuite {
       const Build build = setting.precise ? Build::cpu64 : build_;
       return run_trial(scene, setting.overrides, build);
     };
+
+    // The first run of each setting gives its errors as well as a time.
     for (const Setting& setting : list) {
       Point point{setting, run(setting), {}};
       point.errors = compare(point.trial, reference, scene.samples_alike);
@@ -189,11 +213,14 @@ class AccuracySuite {
       points.push_back(std::move(point));
       progress.update(static_cast<long>(points.size()));
     }
-    // In turns, so that an hour of the machine slows all of them or none; a run that several
-    // settings make alike once for all of them, since the fastest of more would be faster.
+
+    // Further rounds take the settings in turns, so that a slow hour of the machine slows all of
+    // them or none. Settings that lead to the same run share one time: the fastest of more attempts
+    // would be faster by chance.
     std::vector<std::size_t> first(points.size());
     for (std::size_t k = 0; k < points.size(); ++k)
       while (first[k] < k && !same_run(points[first[k]].trial, points[k].trial)) ++first[k];
+
     for (std::size_t round = 1; round < kRounds; ++round) {
       for (std::size_t k = 0; k < points.size(); ++k) {
         double& seconds = points[k].trial.seconds;
@@ -203,6 +230,8 @@ class AccuracySuite {
     }
     for (std::size_t k = 0; k < points.size(); ++k)
       points[k].trial.seconds = points[first[k]].trial.seconds;
+
+    // The front holds the settings that no other beats in both time and error.
     std::vector<std::pair<double, double>> places;
     for (const Point& p : points)
       places.emplace_back(p.trial.seconds, p.errors.position < 0 ? HUGE_VAL : p.errors.position);
@@ -224,6 +253,8 @@ int run_accuracy(const BenchOptions& options) {
   const Build build = only_build(options);
   Report report = begin_report(options, build);
   AccuracySuite suite(build, options.quiet, report);
+
+  // --case may name one scene, or the parts of a scene.
   bool any = false;
   for (const TrialScene& scene : kScenes) {
     if (!chosen(options, scene.name)) continue;
@@ -231,6 +262,7 @@ int run_accuracy(const BenchOptions& options) {
     any = true;
   }
   if (chosen(options, "parts")) show_parts(build, report), any = true;
+
   if (!any) throw no_such_case(options);
   finish_report(options, report);
   return suite.clean() ? 0 : 1;

@@ -1,4 +1,4 @@
-// Speed against error (`icloth bench accuracy`): what each setting costs and what it breaks.
+// icloth bench accuracy: speed against error, with the cost and the error of each setting.
 #pragma once
 
 #include "app/suites/bench/bench_options.h"

@@ -1,4 +1,4 @@
-// What `icloth bench` was asked for.
+// The options of `icloth bench`.
 #pragma once
 
 #include <string>

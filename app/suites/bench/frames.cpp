@@ -10,6 +10,7 @@ Frames::Frames(Build build, const std::string& scene, const std::vector<std::str
                long first, long last, long every)
     : simulator_(make_simulator(build, load_scene(scene, overrides))),
       own_(simulator_->parameters()) {
+  // The run itself; states are kept at regular steps.
   Progress progress(scene, last, false);
   for (long step = 0; step < last; ++step) {
     if (step >= first && (step - first) % every == 0) states_.push_back(simulator_->snapshot());
@@ -20,6 +21,7 @@ Frames::Frames(Build build, const std::string& scene, const std::vector<std::str
 }
 
 StepReport Frames::step(const Snapshot& state, const std::function<void(Parameters&)>& change) {
+  // Every step starts from the same state, with the scene's own parameters but for the change.
   simulator_->restore(state);
   Parameters parameters = own_;
   change(parameters);

@@ -1,4 +1,4 @@
-// States of a run from which single steps are taken again with other settings.
+// States of a run, from which single steps are taken again with other settings.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace icloth {
 
-/// A scene without scripted hands, run with its own parameters; some of its states are kept.
+/// Runs a scene without scripted hands with its own parameters, and keeps some of its states.
 class Frames {
  public:
   /// Keeps the state before every `every`-th step from `first` to `last`.
@@ -21,9 +21,9 @@ class Frames {
   /// Reports of all steps of the run.
   const std::vector<StepReport>& reports() const { return reports_; }
 
-  /// One step from a kept state with changed parameters.
+  /// Takes one step from a kept state with changed parameters.
   StepReport step(const Snapshot& state, const std::function<void(Parameters&)>& change);
-  /// Pairs of faces that intersect in the state after the last step.
+  /// The number of pairs of faces that intersect in the state after the last step.
   std::size_t penetrations() const;
 
  private:

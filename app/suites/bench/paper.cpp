@@ -10,8 +10,8 @@
 namespace icloth {
 namespace {
 
-// The paper's Sphere scene in a smaller version. Without repulsion all contact is left to impacts:
-// thousands a step while the ball pushes into the sheets, like the paper's tangled frames.
+// The scene is the paper's Sphere in a smaller version. Without repulsion all contact is left to
+// impacts: thousands a step while the ball pushes into the sheets, like the paper's tangled frames.
 const std::string kScene = "sphere";
 const std::vector<std::string> kSimple = {"triangles=10000", "step.time_step=0.01"};
 const std::vector<std::string> kTangled = {"triangles=10000", "step.time_step=0.01",
@@ -22,23 +22,28 @@ std::string count(double value) { return format_number(value, 9); }
 
 const char* on_off(bool on) { return on ? "on" : "off"; }
 
-/// One attempt at the whole step, and nothing behind it.
+/// Leaves one attempt at the whole step, and nothing to fall back on.
 void single_attempt(Parameters& p) {
   p.step.max_substep_levels = 0;
   p.step.max_travel = 100;
   p.impact_zones.max_correction = 100;
 }
 
-/// Fig. 13: impacts that are left without repulsion, without impact zones, and with both.
+/// Fig. 13: counts the impacts that are left without repulsion, without impact zones, and with
+/// both.
 bool compare_responses(Build build, Report& report) {
   report.heading("What repulsion and impact zones do (Fig. 13)");
   report.text(
       "From the same states one step is taken in four ways. The paper's three cases on its "
       "version of this scene: 1065, 62 and 0 impacts.");
+
+  // The states come from a run in which everything is on.
   Frames frames(build, kScene, kSimple, kFirst, kLast, kEvery);
   Table table("response", "Sum over " + std::to_string(frames.states().size()) + " states",
               {"proximity", "impact zones", "impacts after integration", "impacts left",
                "penetrations accepted"});
+
+  // Each of the four combinations takes one step from every state.
   bool clean = true;
   for (const bool proximity : {false, true}) {
     for (const bool zones : {false, true}) {
@@ -55,6 +60,7 @@ bool compare_responses(Build build, Report& report) {
         if (step.accepted) penetrations += frames.penetrations();
       }
       clean = clean && penetrations == 0;
+
       table.add({on_off(proximity), on_off(zones), count(first), count(left),
                  std::to_string(penetrations)});
     }
@@ -63,15 +69,18 @@ bool compare_responses(Build build, Report& report) {
   return clean;
 }
 
-/// Fig. 9: box tests and elementary tests of a full and of an incremental detection.
+/// Fig. 9: counts the box tests and elementary tests of a full and of an incremental detection.
 void compare_incremental(Frames& frames, Report& report) {
   report.heading("Incremental collision detection (Fig. 9)");
   report.text(
       "Steps from tangled states. Both versions find the same impacts in every round. The "
       "paper counts 3.68 times fewer box tests on a frame of four rounds.");
+
   Table table("incremental", "Tests in all rounds of a step",
               {"step", "rounds", "box tests full", "incremental", "ratio", "elementary tests full",
                "incremental (elementary)", "ratio (elementary)", "same state"});
+
+  // Each state takes the same step twice, and must end in the same bits.
   for (const Snapshot& state : frames.states()) {
     StepReport step[2];
     for (const bool incremental : {false, true})
@@ -79,6 +88,7 @@ void compare_incremental(Frames& frames, Report& report) {
         p.ccd.incremental = incremental;
         p.broad_phase.count_tests = true;
       });
+
     const auto number = [](std::int64_t value) { return static_cast<double>(value); };
     table.add(
         {std::to_string(state.step + 1), std::to_string(step[0].rounds),
@@ -96,20 +106,25 @@ constexpr std::pair<ZoneSolver, const char*> kSolvers[] = {
     {ZoneSolver::dual, "dual"},
     {ZoneSolver::linear, "linear"}};
 
-/// Fig. 10: the solvers of impact zones on frames that tangle.
+/// Fig. 10: compares the solvers of impact zones on frames that tangle.
 void compare_zone_solvers(Frames& frames, Report& report) {
   report.heading("Solvers of impact zones (Fig. 10)");
   report.text(
       "Steps from the same tangled states, one attempt of at most 200 rounds each. The "
       "linear solver is the inelastic projection of Harmon et al. 2008, which the paper "
       "compares with: 174 against 34 iterations and 12.82 ms against 2.86 ms on one frame.");
+
+  // The table has means over the states, the plot has the time of every step.
   Table table("zone_solvers", "Mean of a step",
               {"solver", "rounds", "iterations", "ms collisions", "impacts left", "max strain",
                "violation / δ", "momentum error"});
   Plot plot{"Collision handling of single steps", "step", "ms", false, true, true, {}};
+
   for (const auto& [solver, name] : kSolvers) {
     double rounds = 0, iterations = 0, ms = 0, left = 0, strain = 0, violation = 0, momentum = 0;
     Series series{name, {}};
+
+    // Every solver takes one step from the same states, in one attempt.
     for (const Snapshot& state : frames.states()) {
       double delta = 1;
       const StepReport step = frames.step(state, [&, chosen = solver](Parameters& p) {
@@ -118,16 +133,21 @@ void compare_zone_solvers(Frames& frames, Report& report) {
         p.impact_zones.max_rounds = 200;
         delta = p.impact_zones.offset;
       });
+
+      // Collision handling is the broad phase, CCD and the zones.
       const double mine = step.ms_broad_phase + step.ms_ccd + step.ms_impact_zones;
       rounds += static_cast<double>(step.rounds);
       iterations += static_cast<double>(step.zone_iterations);
       ms += mine;
       left += static_cast<double>(step.impacts_left);
       strain = std::max(strain, step.max_strain);
+
+      // The worst state counts for strain and residuals.
       violation = std::max(violation, step.zone_violation / delta);
       momentum = std::max(momentum, step.zone_momentum_residual);
       series.points.emplace_back(static_cast<double>(state.step + 1), mine);
     }
+
     const auto n = static_cast<double>(frames.states().size());
     table.add({name, format_number(rounds / n), format_number(iterations / n),
                format_number(ms / n), count(left), format_number(strain, 3),
@@ -138,15 +158,18 @@ void compare_zone_solvers(Frames& frames, Report& report) {
   report.add(plot);
 }
 
-/// The solvers on made-up zones, compared with the optimum.
+/// Compares the solvers on made-up zones with the optimum.
 void compare_with_optimum(Report& report) {
   report.heading("Distance to the optimum of Eq. 1");
   report.text(
       "Two sheets that have gone 2 mm through each other; at most 100 iterations. The "
       "objective is divided by that of the optimum (dual solver in double precision).");
+
   Table table("optimum", "One zone",
               {"vertices", "constraints", "solver", "iterations", "objective / optimum",
                "violation [m]", "complementarity [m]", "momentum error", "ms"});
+
+  // The sizes go from a handful of vertices to a zone that needs the whole device.
   for (const Index side : {5, 15, 50, 150}) {
     const double optimum = cpu64::solve_zone_trial(side, ZoneSolver::dual, 10000).objective;
     for (const auto& [solver, name] : kSolvers) {
@@ -160,7 +183,7 @@ void compare_with_optimum(Report& report) {
   report.add(table);
 }
 
-/// Fig. 5 and 6: rounds and iterations of every step.
+/// Fig. 5 and 6: shows rounds and iterations of every step.
 void show_iterations(const Frames& frames, Report& report) {
   report.heading("Iterations of every step (Fig. 5 and 6)");
   Plot iterations{"Rounds and iterations of the zone solver",
@@ -171,6 +194,8 @@ void show_iterations(const Frames& frames, Report& report) {
                   false,
                   {{"rounds", {}}, {"iterations, all rounds", {}}, {"impacts before", {}}}};
   Plot time{"Time of the impact zones", "step", "ms", false, false, false, {{"impact_zones", {}}}};
+
+  // Two plots over the steps, and the extremes for the table.
   double rounds = 0, most_rounds = 0, most_iterations = 0;
   for (const StepReport& step : frames.reports()) {
     const auto x = static_cast<double>(step.step);
@@ -183,6 +208,7 @@ void show_iterations(const Frames& frames, Report& report) {
     most_rounds = std::max(most_rounds, r);
     most_iterations = std::max(most_iterations, i);
   }
+
   Table table("iterations", "Over " + std::to_string(frames.reports().size()) + " steps",
               {"mean rounds", "most rounds", "most iterations"});
   table.add({format_number(rounds / static_cast<double>(frames.reports().size()), 3),
@@ -192,7 +218,7 @@ void show_iterations(const Frames& frames, Report& report) {
   report.add(time);
 }
 
-/// Fig. 7 and 11: larger time steps.
+/// Fig. 7 and 11: compares larger time steps.
 bool compare_time_steps(Build build, Report& report) {
   report.heading("Larger time steps (Fig. 7 and 11)");
   report.text(
@@ -201,11 +227,14 @@ bool compare_time_steps(Build build, Report& report) {
   Table table("time_steps", "Sphere, 10K triangles, without repulsion",
               {"time step [s]", "steps", "substeps", "retries", "mean rounds", "most impacts",
                "refused steps", "penetrations", "seconds a simulated second"});
+
+  // Each time step simulates the same second.
   bool clean = true;
   for (const int rate : {200, 100, 50, 20}) {
     std::vector<std::string> overrides = kTangled;
     overrides[1] = "step.time_step=" + format_number(1.0 / rate, 6);
     Frames frames(build, kScene, overrides, rate, rate, 1);
+
     double substeps = 0, retries = 0, rounds = 0, impacts = 0, ms = 0;
     int refused = 0;
     for (const StepReport& step : frames.reports()) {
@@ -216,6 +245,8 @@ bool compare_time_steps(Build build, Report& report) {
       ms += step.ms_total;
       refused += step.accepted ? 0 : 1;
     }
+
+    // The final state is checked exactly, however the steps went.
     const std::size_t penetrations = frames.penetrations();
     clean = clean && penetrations == 0;
     table.add({"1/" + std::to_string(rate), std::to_string(rate), count(substeps), count(retries),
@@ -226,7 +257,7 @@ bool compare_time_steps(Build build, Report& report) {
   return clean;
 }
 
-/// The two broad phases on the same states.
+/// Compares the two broad phases on the same states.
 void compare_broad_phases(Frames& frames, Report& report) {
   report.heading("Broad phases: trees and spatial hashing");
   Table table("broad_phase", "Mean of a step",
@@ -234,10 +265,13 @@ void compare_broad_phases(Frames& frames, Report& report) {
   std::vector<std::uint64_t> expected;
   constexpr std::pair<BroadPhaseMethod, const char*> kMethods[] = {
       {BroadPhaseMethod::tree, "tree"}, {BroadPhaseMethod::hash, "hash"}};
+
+  // Both must find the same pairs, and so lead to the same states.
   for (const auto& [method, name] : kMethods) {
     double ms = 0, tests = 0, pairs = 0;
     std::vector<std::uint64_t> hashes;
     for (const Snapshot& state : frames.states()) {
+      // Counting boxes takes time, so the counts come from a step of their own.
       const auto with = [chosen = method](bool count_tests) {
         return [chosen, count_tests](Parameters& p) {
           p.broad_phase.method = chosen;
@@ -250,6 +284,7 @@ void compare_broad_phases(Frames& frames, Report& report) {
       pairs += static_cast<double>(step.candidate_pairs);
       hashes.push_back(step.state_hash);
     }
+
     if (expected.empty()) expected = hashes;
     const auto n = static_cast<double>(frames.states().size());
     table.add({name, format_number(ms / n), format_number(tests / n), format_number(pairs / n),
@@ -263,7 +298,10 @@ void compare_broad_phases(Frames& frames, Report& report) {
 int run_paper(const BenchOptions& options) {
   const Build build = only_build(options);
   Report report = begin_report(options, build);
+
   bool clean = compare_responses(build, report);
+
+  // The tangled states serve all comparisons of collision handling.
   {
     Frames frames(build, kScene, kTangled, kFirst, kLast, kEvery);
     compare_incremental(frames, report);
@@ -271,6 +309,7 @@ int run_paper(const BenchOptions& options) {
     compare_broad_phases(frames, report);
     show_iterations(frames, report);
   }
+
   compare_with_optimum(report);
   clean = compare_time_steps(build, report) && clean;
   finish_report(options, report);

@@ -11,12 +11,13 @@
 namespace icloth {
 namespace {
 
+/// One part of a scene, and how it is added.
 struct Part {
   const char* name;
   std::function<void(Scene&)> add;
 };
 
-/// From a hanging sheet to the whole scene, each with all those before it.
+/// The parts, from a hanging sheet to the whole scene; each is added to all those before it.
 std::vector<Part> parts(const Scene& whole) {
   const Obstacle ball = whole.obstacles.at(0);
   const std::vector<Cloth> cloths = whole.cloths;
@@ -50,6 +51,7 @@ std::vector<Part> parts(const Scene& whole) {
   };
 }
 
+/// The scene with nothing but one hanging sheet.
 Scene bare(const Scene& whole) {
   Scene scene = whole;
   scene.cloths = {whole.cloths.at(2)};
@@ -69,6 +71,7 @@ void show_parts(Build build, Report& report) {
   constexpr int kRounds = 3;
   const std::shared_ptr<const Scene> whole =
       load_scene("sphere", std::vector<std::string>{"triangles=30000", "step.time_step=0.01"});
+
   report.heading("What each part of a scene costs");
   report.text(
       "The sphere scene with 10,000 triangles a sheet for 0.8 s, from one hanging sheet on; every "
@@ -76,13 +79,16 @@ void show_parts(Build build, Report& report) {
   Table table("parts", "Each part switched on in turn",
               {"with", "ms a step", "change", "proximity", "implicit", "broad phase", "ccd",
                "impact zones", "other", "contacts", "impacts"});
+
   const std::vector<Part> list = parts(*whole);
   std::vector<RunStatistics> fastest(list.size());
-  // In turns, so that an hour of the machine slows all rows or none.
+  // The parts are measured in turns, so that a slow hour of the machine slows all rows or none.
   for (int round = 0; round < kRounds; ++round) {
     Scene scene = bare(*whole);
     for (std::size_t k = 0; k < list.size(); ++k) {
       list[k].add(scene);
+
+      // The fastest of several runs counts.
       HeadlessJob job;
       job.scene = std::make_shared<const Scene>(scene);
       job.build = build;
@@ -93,6 +99,8 @@ void show_parts(Build build, Report& report) {
         fastest[k] = std::move(now);
     }
   }
+
+  // The change is the time against the row above, which has one part less.
   for (std::size_t k = 0; k < list.size(); ++k) {
     const auto value = [&](const char* column) { return fastest[k].mean(column); };
     const auto mean = [&](const char* column) { return format_number(value(column), 3); };
@@ -102,6 +110,7 @@ void show_parts(Build build, Report& report) {
                mean("ms_impact_zones"), mean("ms_other"), mean("proximity_pairs"),
                mean("impacts_first")});
   }
+
   report.add(table);
 }
 

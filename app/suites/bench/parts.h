@@ -1,4 +1,4 @@
-// What each part of a scene costs: one scene that gets them in turn.
+// The cost of each part of a scene: one scene that gets them in turn.
 #pragma once
 
 #include "app/suites/report/report.h"

@@ -17,6 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// One case of the quick suite.
 struct BenchCase {
   const char* name;
   const char* scene;
@@ -32,12 +33,16 @@ const std::vector<BenchCase>& quick_suite() {
   return cases;
 }
 
+/// The result of one case as JSON.
 Json describe(const BenchCase& test, Build build, const Scene& scene,
               const HeadlessResult& result) {
+  // The hash does not fit into a JSON number, so it is text.
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, result.state_hash);
   std::size_t triangles = 0;
   for (const Cloth& cloth : scene.cloths) triangles += cloth.mesh.faces.size();
+
+  // The case itself comes first, so that a result can be repeated.
   Json json;
   json["name"] = test.name;
   json["scene"] = test.scene;
@@ -46,6 +51,8 @@ Json describe(const BenchCase& test, Build build, const Scene& scene,
   json["triangles"] = triangles;
   json["time_step"] = scene.parameters.step.time_step;
   json["steps"] = result.statistics.steps();
+
+  // The numbers of the run follow.
   json["steps_per_second"] = result.statistics.steps_per_second();
   for (const ReportColumn& column : report_columns()) {
     if (!column.name.starts_with("ms_")) continue;
@@ -53,6 +60,7 @@ Json describe(const BenchCase& test, Build build, const Scene& scene,
     json[name] = {{"median", result.statistics.median(column.name)},
                   {"mean", result.statistics.mean(column.name)}};
   }
+
   json["impacts"] = result.statistics.sum("impacts_first");
   json["retries"] = result.statistics.sum("retries");
   json["penetrations"] = result.penetrations;
@@ -76,6 +84,8 @@ void print_row(const Json& row) {
 int run_quick(const BenchOptions& options) {
   const std::vector<Build> builds = chosen_builds(options.device);
   Json results = begin_suite(options, builds);
+
+  // The head names the machine, since times mean little without it.
   std::printf("%s, %d threads, %.1f GB/s, %s, commit %s\n", processor_name().c_str(),
               results["machine"]["threads"].get<int>(),
               results["machine"]["memory_bandwidth"].get<double>() / 1e9, compiler_name().c_str(),
@@ -86,8 +96,11 @@ int run_quick(const BenchOptions& options) {
                 cuda["device"].get<std::string>().c_str(),
                 cuda["copy_bandwidth"].get<double>() / 1e9);
   }
+
   std::printf("%-24s %-7s %9s %6s %9s %10s %12s %9s\n", "test", "build", "triangles", "steps",
               "steps/s", "ms median", "penetrations", "peak MB");
+
+  // Every case runs on every build, in the same order on every machine.
   bool clean = true;
   for (const BenchCase& test : quick_suite()) {
     for (const Build build : builds) {
@@ -103,6 +116,8 @@ int run_quick(const BenchOptions& options) {
       print_row(results["results"].back());
     }
   }
+
+  // The table is on the terminal; the file is for comparisons.
   if (!options.out.empty()) write_file(options.out + "/results.json", results.dump(1) + "\n");
   return clean ? 0 : 1;
 }

@@ -12,6 +12,7 @@
 namespace icloth {
 namespace {
 
+/// A run whose states serve for the comparison.
 struct SolverCase {
   const char* name;
   const char* scene;
@@ -19,7 +20,7 @@ struct SolverCase {
   long first, last, every;
 };
 
-// Sphere: the sheets hang at first and lie on the ball from step 90 on.
+// In the sphere scene the sheets hang at first and lie on the ball from step 90 on.
 const SolverCase kCases[] = {
     {"sphere 200K", "sphere", {"triangles=200000"}, 10, 111, 50},
     {"scarf 10K", "scarf", {"triangles=10000"}, 40, 101, 30},
@@ -34,7 +35,7 @@ const SolverCase kCases[] = {
 constexpr std::pair<Preconditioner, const char*> kPreconditioners[] = {
     {Preconditioner::block_jacobi, "block_jacobi"}, {Preconditioner::multilevel, "multilevel"}};
 
-/// What the solves of one step, or of several, took.
+/// The time and the iterations of the solves of one step, or of several.
 struct Measured {
   double ms_solve = 0, ms_set_up = 0;
   std::int64_t solves = 0, iterations = 0;
@@ -51,12 +52,15 @@ struct Measured {
 };
 using Compared = std::array<Measured, std::size(kPreconditioners)>;
 
-/// A step, or no more than the first solve of each substep, which starts from zero.
+/// Measures a step. With `first_solve` it makes no more than the first solve of each substep, which
+/// starts from zero.
 Measured measure(Frames& frames, const Snapshot& state, Preconditioner preconditioner,
                  bool first_solve) {
   Measured measured;
   profile_reset();
   profile_enable(true);
+
+  // Both preconditioners solve to the same residual, with room to get there.
   const StepReport report = frames.step(state, [&](Parameters& p) {
     p.implicit.preconditioner = preconditioner;
     p.implicit.cg_tolerance = 1e-3;
@@ -64,6 +68,8 @@ Measured measure(Frames& frames, const Snapshot& state, Preconditioner precondit
     if (first_solve) p.implicit.newton_iterations = p.implicit.contact_passes = 1;
   });
   profile_enable(false);
+
+  // The report has the counts; the profile has the times of the solves and of the set-up.
   measured.solves = report.linear_solves;
   measured.iterations = report.cg_iterations;
   measured.contacts = report.proximity_pairs;
@@ -75,7 +81,8 @@ Measured measure(Frames& frames, const Snapshot& state, Preconditioner precondit
   return measured;
 }
 
-/// In turns, as the speed of a machine that others use comes and goes; the fastest counts.
+/// Measures all preconditioners in turns, as the speed of a machine that others use comes and goes.
+/// The fastest run of each counts.
 Compared compare(Frames& frames, const Snapshot& state, bool first_solve) {
   constexpr int kRepeats = 5;
   Compared fastest;
@@ -88,6 +95,7 @@ Compared compare(Frames& frames, const Snapshot& state, bool first_solve) {
   return fastest;
 }
 
+/// Adds one row for each preconditioner.
 void add_rows(const char* scene, const std::string& step, const std::string& what,
               const Compared& compared, Table& table) {
   for (std::size_t p = 0; p < compared.size(); ++p) {
@@ -100,6 +108,7 @@ void add_rows(const char* scene, const std::string& step, const std::string& wha
   }
 }
 
+/// Compares on every state of a case, and on all of them together.
 void run_case(const SolverCase& test, Build build, Table& table) {
   Frames frames(build, test.scene, test.overrides, test.first, test.last, test.every);
   for (const bool first_solve : {true, false}) {
@@ -125,6 +134,7 @@ int run_solver(const BenchOptions& options) {
   for (const SolverCase& test : kCases) {
     if (chosen(options, test.name)) run_case(test, build, table);
   }
+
   if (table.rows().empty()) throw no_such_case(options);
   report.heading("Preconditioners of the implicit step");
   report.text(

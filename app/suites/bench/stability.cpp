@@ -21,6 +21,7 @@ void print_head() {
               "states", "penet", "NaN", "s", "verdict");
 }
 
+/// Prints the row of a case, and the requirements that it missed below it.
 void print_row(const Case& test, Build build, const CaseResult& r) {
   const auto number = [](std::int64_t n) { return static_cast<long long>(n); };
   std::printf(
@@ -33,11 +34,13 @@ void print_row(const Case& test, Build build, const CaseResult& r) {
   std::fflush(stdout);
 }
 
+/// The result of a case as JSON.
 Json describe(const Case& test, Build build, const CaseResult& r) {
   Json json;
   json["name"] = test.name;
   json["required"] = test.required;
   json["build"] = build_name(build);
+
   json["steps"] = r.steps;
   json["substeps"] = r.substeps;
   json["retries"] = r.retries;
@@ -62,12 +65,17 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
 int run_stability(const BenchOptions& options) {
   const std::vector<Build> builds = chosen_builds(options.device);
   Json results = begin_suite(options, builds);
+
+  // The settings are common to all cases; only the build changes.
   stability::Settings settings;
   settings.threads = options.threads;
   settings.soak_seconds = options.soak;
   make_output_folder(options.frames, "--frames");
   settings.frames = options.frames;
+
   print_head();
+
+  // Every case that --case leaves in runs on every build.
   int failed = 0, passed = 0;
   for (const Case& test : stability::cases()) {
     if (!chosen(options, test.name)) continue;
@@ -79,6 +87,8 @@ int run_stability(const BenchOptions& options) {
       results["results"].push_back(describe(test, build, result));
     }
   }
+
+  // The verdicts are counted; a --case that fits none is a mistake.
   if (passed + failed == 0) throw no_such_case(options);
   std::printf("%d passed, %d failed\n", passed, failed);
   if (!options.out.empty()) write_file(options.out + "/results.json", results.dump(1) + "\n");

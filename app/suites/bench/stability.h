@@ -5,8 +5,8 @@
 
 namespace icloth {
 
-/// Runs the cases that --case names (all by default) and prints a table; what is required and is
-/// not so is named below its row. Returns 0, or 1 when a case fails.
+/// Runs the cases that --case names (all by default) and prints a table; the requirements that a
+/// case misses are printed below its row. Returns 0, or 1 when a case fails.
 int run_stability(const BenchOptions& options);
 
 }  // namespace icloth

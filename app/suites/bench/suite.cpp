@@ -14,6 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The CUDA device that is used, as JSON.
 Json describe_cuda() {
   Json json;
   const CudaSystem system = cuda_system();

@@ -1,4 +1,4 @@
-// What the benchmark suites share.
+// Functions that the benchmark suites share.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,29 +13,30 @@
 
 namespace icloth {
 
-/// The CPU and the usable CUDA device, or the one that was asked for.
+/// The CPU and the usable CUDA device, or the device that was asked for.
 std::vector<Build> chosen_builds(const std::string& device);
 
-/// Program, processor, memory and measured bandwidth; those of the CUDA device too where it is
-/// used.
+/// The program, the processor, its memory and measured bandwidth; those of the CUDA device too
+/// where it is used.
 nlohmann::ordered_json describe_machine(int threads, bool cuda);
 
-/// Throws InputError when it cannot be made; does nothing for "". `option`: gave the folder.
+/// Makes a folder, or does nothing for "". Throws InputError, which names the `option` that gave
+/// the folder.
 void make_output_folder(const std::string& folder, const char* option = "--out");
 
-/// Makes the folder, sets the threads; the head of results.json: suite and machine.
+/// Makes the folder and sets the threads. Returns the head of results.json: suite and machine.
 nlohmann::ordered_json begin_suite(const BenchOptions& options, const std::vector<Build>& builds);
 
-/// Of a suite that runs on one build: the CPU's unless another device was asked for.
+/// The build of a suite that runs on one build: the CPU's unless another device was asked for.
 Build only_build(const BenchOptions& options);
-/// Makes the folder, sets the threads; an empty report of the suite.
+/// Makes the folder and sets the threads. Returns an empty report of the suite.
 Report begin_report(const BenchOptions& options, Build build);
-/// Writes it where --out says, if anywhere.
+/// Writes the report where --out says, if anywhere.
 void finish_report(const BenchOptions& options, const Report& report);
 
-/// Whether --case leaves this case in.
+/// True when --case leaves this case in.
 bool chosen(const BenchOptions& options, std::string_view name);
-/// What to throw when it leaves none.
+/// The error to throw when it leaves none.
 InputError no_such_case(const BenchOptions& options);
 
 }  // namespace icloth

@@ -1,4 +1,4 @@
-// One run of a scene, timed and sampled, and how far it is from another.
+// One run of a scene, timed and sampled, and its distance from another run.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ struct TrialScene {
   std::vector<std::string> overrides;
   double interval;  ///< between samples [s]
   int samples;
-  /// Of which positions are compared. Later, folds that depend on the last digit have formed, and
-  /// only energies and areas can be.
+  /// Number of samples whose positions are compared. In later samples folds have formed that depend
+  /// on the last digit, so that only energies and areas can be compared.
   int samples_alike;
 };
 
-/// State of the cloths at one time.
+/// The state of the cloths at one time.
 struct Sample {
   std::vector<Vec3d> positions, velocities;      ///< of the cloths' vertices
   double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
@@ -28,6 +28,7 @@ struct Sample {
   double energy() const { return kinetic + elastic + gravity; }
 };
 
+/// The outcome of one run.
 struct Trial {
   std::vector<Sample> samples;
   std::vector<double> mass;  ///< of the cloths' vertices [kg]
@@ -43,17 +44,18 @@ struct Trial {
   bool finished = false;  ///< no step was refused
 };
 
-/// The scene as a trial loads it; `overrides` come after its own.
+/// Loads the scene as a trial runs it; `overrides` come after its own.
 std::shared_ptr<const Scene> trial_scene(const TrialScene& scene,
                                          const std::vector<std::string>& overrides);
 
-/// Runs it so, once; the time step must divide the interval.
+/// Runs the scene once with the overrides. The time step must divide the interval of the samples.
 Trial run_trial(const TrialScene& scene, const std::vector<std::string>& overrides, Build build);
 
-/// Whether both took the same steps to the same end, by the samples and the work of the stages.
+/// True when both runs took the same steps to the same end, by the samples and the work of the
+/// stages.
 bool same_run(const Trial& a, const Trial& b);
 
-/// Distances from a reference; relative ones are of the largest of the reference's samples.
+/// The distances from a reference. Relative ones refer to the largest of the reference's samples.
 struct Errors {
   double position = 0;  ///< root of the mean square over mass and samples [m]; −1: another mesh
   double energy = 0;    ///< largest difference, of what the energies change by
@@ -61,9 +63,11 @@ struct Errors {
   double shadow = 0;    ///< of the area
 };
 
+/// Compares a trial with a reference; `samples_alike` is that of the scene.
 Errors compare(const Trial& trial, const Trial& reference, int samples_alike);
 
-/// Whether no other point is at most as slow and at most as wrong, both x and y ≤ and one <.
+/// Marks the points that no other one beats: no point is at most as large in both x and y and
+/// smaller in one.
 std::vector<bool> pareto_front(const std::vector<std::pair<double, double>>& points);
 
 }  // namespace icloth

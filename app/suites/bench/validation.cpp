@@ -15,6 +15,7 @@ using validation::Case;
 using validation::CaseResult;
 using validation::Figure;
 
+/// Prints the comparisons of a case, and the requirements that it missed below them.
 void print_case(const Case& test, Build build, const CaseResult& r) {
   for (const Figure& f : r.figures)
     std::printf("%-19s %-6s %-50s %12.6g %12.6g %9.1e %8.1e  %s\n", test.name,
@@ -24,6 +25,7 @@ void print_case(const Case& test, Build build, const CaseResult& r) {
   std::fflush(stdout);
 }
 
+/// The result of a case as JSON.
 Json describe(const Case& test, Build build, const CaseResult& r) {
   Json json;
   json["name"] = test.name;
@@ -45,6 +47,7 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   return json;
 }
 
+/// The result of a case as rows of figures.csv.
 std::string csv_rows(const Case& test, Build build, const CaseResult& r) {
   std::string rows;
   char numbers[160];
@@ -63,25 +66,32 @@ int run_validation(const BenchOptions& options) {
   const std::vector<Build> builds = chosen_builds(options.device);
   Json results = begin_suite(options, builds);
   std::string csv = "case,build,what,reference,measured,error,target,verdict\n";
+
   std::printf("%-19s %-6s %-50s %12s %12s %9s %8s  %s\n", "case", "build", "what", "reference",
               "measured", "error", "target", "verdict");
   int cases = 0, failed = 0;
   double seconds = 0;
+
+  // Every case that --case leaves in runs on every build that can hold it to its targets.
   for (const Case& test : validation::cases()) {
     if (!chosen(options, test.name)) continue;
     for (const Build build : builds) {
       validation::Settings settings;
       settings.build = build;
+
       if (!runs_on(test, settings.build)) continue;
       const CaseResult result = run_case(test, settings);
       ++cases;
       failed += result.passed() ? 0 : 1;
       seconds += result.seconds;
+
       print_case(test, settings.build, result);
       results["results"].push_back(describe(test, settings.build, result));
       csv += csv_rows(test, settings.build, result);
     }
   }
+
+  // The verdict is printed; the files are for the documentation.
   if (cases == 0) throw no_such_case(options);
   std::printf("%d of %d cases within their targets, %.1f s\n", cases - failed, cases, seconds);
   if (!options.out.empty()) {

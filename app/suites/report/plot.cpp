@@ -10,7 +10,7 @@ namespace icloth {
 namespace {
 
 constexpr double kWidth = 760, kHeight = 360, kLeft = 70, kRight = 190, kTop = 36, kBottom = 52;
-// Okabe and Ito's colours: told apart by people with any colour vision.
+// These are Okabe and Ito's colours, told apart by people with any colour vision.
 constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73",
                                     "#CC79A7", "#E69F00", "#56B4E9"};
 
@@ -20,17 +20,19 @@ std::string format(const char* pattern, double a, double b = 0, double c = 0, do
   return text;
 }
 
-/// One axis: from values to places between 0 and 1.
+/// One axis: it maps values to places between 0 and 1.
 class Axis {
  public:
   explicit Axis(bool logarithmic) : log_(logarithmic) {}
 
   bool usable(double value) const { return std::isfinite(value) && (!log_ || value > 0); }
+  /// Extends the axis to a value.
   void cover(double value) {
     if (!usable(value)) return;
     low_ = std::min(low_, map(value));
     high_ = std::max(high_, map(value));
   }
+  /// Ends the axis at round numbers. It starts at zero where that costs little room.
   void finish() {
     if (low_ > high_) low_ = 0, high_ = 1;
     if (!log_ && low_ > 0 && low_ < 0.5 * high_) low_ = 0;
@@ -51,7 +53,7 @@ class Axis {
 
  private:
   double map(double value) const { return log_ ? std::log10(value) : value; }
-  /// 1, 2 or 5 times a power of ten, at least `step`.
+  /// The smallest of 1, 2 and 5 times a power of ten that is at least `step`.
   static double nice(double step) {
     const double power = std::pow(10.0, std::floor(std::log10(step)));
     for (const double factor : {1.0, 2.0, 5.0})
@@ -70,6 +72,7 @@ std::string label(double x, double y, const char* style, const std::string& text
   return format("<text x=\"%.1f\" y=\"%.1f\" ", x, y) + style + ">" + html_text(text) + "</text>\n";
 }
 
+/// The lines of the grid with their numbers.
 std::string grid(const Axis& x, const Axis& y) {
   std::string out;
   const char* line = "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n";
@@ -87,21 +90,27 @@ std::string grid(const Axis& x, const Axis& y) {
 }  // namespace
 
 std::string Plot::svg() const {
+  // The axes cover all points that can be drawn.
   Axis x(log_x), y(log_y);
   for (const Series& s : series)
     for (const auto& [px, py] : s.points)
       if (x.usable(px) && y.usable(py)) x.cover(px), y.cover(py);
   x.finish();
   y.finish();
+
+  // The frame and the grid.
   std::string out = format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
       kWidth, kHeight);
   out += format("<rect width=\"%.0f\" height=\"%.0f\" fill=\"white\"/>\n", kWidth, kHeight);
   out += grid(x, y);
+
+  // Each series is a path with its dots, and a line in the legend.
   for (std::size_t k = 0; k < series.size(); ++k) {
     const std::string colour = kColours[k % std::size(kColours)];
     std::string path, dots;
+
     for (const auto& [px, py] : series[k].points) {
       if (!x.usable(px) || !y.usable(py)) continue;
       const double at_x = to_x(x.place(px)), at_y = to_y(y.place(py));
@@ -110,15 +119,20 @@ std::string Plot::svg() const {
         dots += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"", at_x, at_y) + colour +
                 "\"/>\n";
     }
+
     if (!series[k].line) path.clear();
     out += "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
            "\" stroke-width=\"1.5\"/>\n" + dots;
+
+    // The legend lists the series from the top.
     const double row = kTop + 14 + 16 * static_cast<double>(k);
     out += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"3\" fill=\"", kWidth - 180,
                   row - 5) +
            colour + "\"/>\n";
     out += label(kWidth - 162, row, "text-anchor=\"start\"", series[k].name);
   }
+
+  // The title and the names of the axes.
   out += label(to_x(0.5), 20, "text-anchor=\"middle\" font-size=\"14\"", title);
   out += label(to_x(0.5), kHeight - 12, "text-anchor=\"middle\"", x_label);
   out += "<g transform=\"translate(16," + format("%.1f", kHeight / 2) + ") rotate(-90)\">" +

@@ -7,6 +7,7 @@
 
 namespace icloth {
 
+/// One line of a plot.
 struct Series {
   std::string name;
   std::vector<std::pair<double, double>>
@@ -14,13 +15,14 @@ struct Series {
   bool line = true;  ///< joins them in their order
 };
 
+/// A plot with its axes.
 struct Plot {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
   bool markers = false;  ///< a dot at every point
   std::vector<Series> series;
 
-  /// A stand-alone <svg> element.
+  /// The plot as a stand-alone <svg> element.
   std::string svg() const;
 };
 

@@ -13,7 +13,7 @@ constexpr const char* kStyle =
     "padding:.3em 0}th,td{border:1px solid #ccc;padding:.2em .6em;text-align:left}"
     "td.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}";
 
-/// Numbers stay numbers.
+/// A cell as JSON; numbers stay numbers.
 nlohmann::ordered_json json_cell(const std::string& cell) {
   const auto json = nlohmann::ordered_json::parse(cell, nullptr, false);
   return json.is_number() ? json : nlohmann::ordered_json(cell);

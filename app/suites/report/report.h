@@ -9,9 +9,11 @@
 
 namespace icloth {
 
+/// Collects headings, texts, tables and plots, which it also prints as far as a terminal can show
+/// them.
 class Report {
  public:
-  /// `machine`: what the results were measured with; goes to the top.
+  /// Starts a report with the machine that it was measured on.
   Report(std::string title, nlohmann::ordered_json machine);
 
   void heading(const std::string& text);

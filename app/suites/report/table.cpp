@@ -14,12 +14,13 @@ bool is_number(const std::string& cell) {
   return !cell.empty() && *end == 0;
 }
 
-/// Characters, not bytes: continuation bytes of UTF-8 take no room.
+/// The width of a text in characters, not bytes: continuation bytes of UTF-8 take no room.
 std::size_t width(const std::string& cell) {
   return static_cast<std::size_t>(
       std::ranges::count_if(cell, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
+/// A cell in quotes where a comma or a quote would break the line.
 std::string csv_cell(const std::string& cell) {
   if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
   std::string quoted = "\"";
@@ -41,11 +42,14 @@ void Table::add(std::vector<std::string> cells) {
 }
 
 std::string Table::text() const {
+  // Every column is as wide as its widest cell.
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     widths.push_back(width(columns_[c]));
     for (const auto& row : rows_) widths[c] = std::max(widths[c], width(row[c]));
   }
+
+  // Numbers stand on the right, texts on the left, and lines end without blanks.
   std::string out = title_ + "\n";
   const auto line = [&](const std::vector<std::string>& cells, bool head) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -56,6 +60,7 @@ std::string Table::text() const {
     while (out.back() == ' ') out.pop_back();
     out += '\n';
   };
+
   line(columns_, true);
   for (const auto& row : rows_) line(row, false);
   return out;

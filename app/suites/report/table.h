@@ -6,12 +6,13 @@
 
 namespace icloth {
 
+/// Named columns and rows of texts.
 class Table {
  public:
-  /// `name`: of its CSV file; `title`: what people read.
+  /// `name` is that of its CSV file; `title` is its heading for readers.
   Table(std::string name, std::string title, std::vector<std::string> columns);
 
-  /// As many cells as there are columns.
+  /// Adds a row of as many cells as there are columns.
   void add(std::vector<std::string> cells);
 
   const std::string& name() const { return name_; }
@@ -19,7 +20,7 @@ class Table {
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::vector<std::string>>& rows() const { return rows_; }
 
-  /// Columns aligned with blanks; numbers to the right.
+  /// The table as text: columns aligned with blanks, numbers to the right.
   std::string text() const;
   std::string csv() const;
   std::string html() const;
@@ -30,10 +31,10 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// "1234", "0.0123", "1.2e-05": so many significant digits.
+/// A number with so many significant digits: "1234", "0.0123", "1.2e-05".
 std::string format_number(double value, int digits = 4);
 
-/// Text with &, < and > made safe.
+/// The text with &, < and > made safe.
 std::string html_text(const std::string& text);
 
 }  // namespace icloth

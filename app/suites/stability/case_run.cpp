@@ -19,7 +19,7 @@ bool all_finite(const std::vector<Vec3d>& list) {
       list, [](Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
 }
 
-/// States from one exported one to the next.
+/// Number of states from one exported state to the next.
 constexpr std::int64_t kExportEvery = 10;
 
 std::string counted(std::int64_t number, const char* what) {
@@ -29,8 +29,11 @@ std::string counted(std::int64_t number, const char* what) {
 }  // namespace
 
 Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
+  // The start state must be valid, unless its refusal is the case.
   const auto pairs = find_start_intersections(*scene, settings_.build != Build::cpu64);
   require(pairs.empty(), "the start state of the case is free of intersections");
+
+  // The faces of all objects are listed for the exact check of every state.
   faces_.clear();
   group_.clear();
   Index first = 0;
@@ -40,6 +43,7 @@ Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
     group_.resize(faces_.size(), number);
     first += static_cast<Index>(mesh.positions.size());
   };
+
   for (const Cloth& cloth : scene->cloths) append(cloth.mesh, 0);
   for (const Obstacle& obstacle : scene->obstacles) append(obstacle.mesh, -1);
   simulator_ = make_simulator(settings_.build, std::move(scene));
@@ -47,6 +51,7 @@ Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
 }
 
 void CaseRun::throw_cloth(std::size_t cloth, Vec3d velocity) {
+  // The velocity belongs to the vertices of one cloth, and no older state counts.
   Snapshot state = simulator_->snapshot();
   const Scene& scene = simulator_->scene();
   std::size_t first = 0;
@@ -67,12 +72,14 @@ void CaseRun::check_state() {
       static_cast<std::int64_t>(find_intersections(state.positions, faces_, group_).size());
 }
 
-/// Cloths and obstacles in one file each, so that other programs can tell them apart.
+/// Writes cloths and obstacles to one file each, so that other programs can tell them apart.
 void CaseRun::write_state() const {
   std::vector<Vec3f> positions;
   simulator_->positions(positions);
   const std::vector<NamedMesh> meshes = named_meshes(simulator_->scene(), positions);
   const std::size_t cloths = simulator_->scene().cloths.size();
+
+  // The file's name is that of the case with the number of the state.
   std::string name = name_;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
@@ -93,6 +100,7 @@ void CaseRun::check_refusal(const Snapshot& before, const StepReport& report) {
 }
 
 StepReport CaseRun::step(std::span<const InputEvent> events) {
+  // The sums and extremes of the case go on from step to step.
   const Snapshot before = simulator_->snapshot();
   const StepReport report = simulator_->step(events);
   ++result_.steps;
@@ -103,6 +111,8 @@ StepReport CaseRun::step(std::span<const InputEvent> events) {
   result_.violation = std::max(result_.violation, report.zone_violation);
   result_.max_strain = std::max(result_.max_strain, report.max_strain);
   result_.max_speed = std::max(result_.max_speed, report.max_speed);
+
+  // A refused step must have left the state alone; an accepted one is checked exactly.
   if (!report.accepted)
     check_refusal(before, report);
   else if (result_.steps % check_every_ == 0)
@@ -127,6 +137,7 @@ void CaseRun::require(bool holds, const std::string& what) {
 void CaseRun::require_input_error(const std::function<void()>& load,
                                   const std::vector<std::string>& words) {
   try {
+    // The message must have every word.
     load();
   } catch (const InputError& error) {
     for (const std::string& word : words)

@@ -1,5 +1,5 @@
-// One case of the stability suite while it runs: steps its simulator, checks every state exactly,
-// adds up the figures and holds the result against what is required.
+// One case of the stability suite while it runs. It steps its simulator, checks every state
+// exactly, adds up the statistics and compares the result with what is required.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 
 namespace icloth::stability {
 
+/// The settings of a run of the suite.
 struct Settings {
   Build build = Build::cpu32;
   bool brief = false;        ///< shortest form, for tests that run at every change
@@ -20,6 +21,7 @@ struct Settings {
   std::string frames;        ///< folder that exists, for some of the checked states; empty: none
 };
 
+/// The statistics of a case and its failures.
 struct CaseResult {
   std::int64_t steps = 0, substeps = 0, retries = 0, rounds = 0, impacts = 0;
   std::int64_t refused = 0;       ///< steps that kept the state before them
@@ -30,41 +32,42 @@ struct CaseResult {
   double max_speed = 0;               ///< [m/s]
   bool finite = true;                 ///< no accepted state held NaN or infinity
   double seconds = 0;                 ///< of wall time
-  std::vector<std::string> failures;  ///< what was required and is not so
-  std::string note;                   ///< one line about what was seen
+  std::vector<std::string> failures;  ///< requirements that do not hold
+  std::string note;                   ///< one line about the run
 
   bool passed() const { return failures.empty(); }
 };
 
+/// Runs the steps of a case. A case is a function that takes one of these.
 class CaseRun {
  public:
-  /// `name`: begins the names of the exported states.
+  /// `name` begins the names of the exported states.
   explicit CaseRun(const Settings& settings, std::string name = "case")
       : settings_(settings), name_(std::move(name)) {}
 
   const Settings& settings() const { return settings_; }
   bool brief() const { return settings_.brief; }
 
-  /// Makes the simulator of a scene whose start state must be free of intersections. The one
-  /// before is dropped, the figures go on.
+  /// Makes the simulator of a scene whose start state must be free of intersections. The one before
+  /// is dropped; the statistics go on.
   Simulator& start(std::shared_ptr<const Scene> scene);
-  /// Same velocity for all vertices of a cloth.
+  /// Gives all vertices of a cloth the same velocity.
   void throw_cloth(std::size_t cloth, Vec3d velocity);
   Simulator& simulator() { return *simulator_; }
 
-  /// From now on only every k-th accepted state is checked exactly.
+  /// Checks only every k-th accepted state exactly from now on.
   void check_every(int k) { check_every_ = k; }
-  /// Refused steps are part of what is required; they must name their pairs.
+  /// Allows refused steps, which are part of what is required; they must name their pairs.
   void allow_refusals() { refusals_allowed_ = true; }
 
   StepReport step(std::span<const InputEvent> events = {});
-  /// Steps until the end or the first refused step; false then.
+  /// Steps until the end or the first refused step; returns false in the latter case.
   bool steps(int count);
-  /// As many steps as make up a time [s].
+  /// Makes as many steps as a time [s] takes.
   bool run_for(double seconds);
 
   void require(bool holds, const std::string& what);
-  /// Requires that making a simulator or loading is refused with all these words in the message.
+  /// Requires that making a simulator or loading is refused, with all these words in the message.
   void require_input_error(const std::function<void()>& load,
                            const std::vector<std::string>& words);
   void note(const std::string& text);
@@ -72,7 +75,7 @@ class CaseRun {
   const CaseResult& figures() const { return result_; }
   std::vector<Vec3d> positions() const { return simulator_->snapshot().positions; }
 
-  /// Checks what holds for all cases and hands out the figures.
+  /// Checks the requirements that all cases share and returns the result.
   CaseResult finish();
 
  private:
@@ -90,6 +93,7 @@ class CaseRun {
   CaseResult result_;
 };
 
+/// One row of the suite.
 struct Case {
   const char* name;
   const char* required;  ///< behaviour, one line
@@ -99,7 +103,7 @@ struct Case {
 /// All cases, in the order of the table.
 std::span<const Case> cases();
 
-/// Runs one; anything thrown is a failure.
+/// Runs one case; anything thrown is a failure.
 CaseResult run_case(const Case& test, const Settings& settings);
 
 }  // namespace icloth::stability

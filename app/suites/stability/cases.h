@@ -1,4 +1,4 @@
-// The cases of the stability suite, by the file they are in. What each requires is in cases.cpp.
+// The cases of the stability suite, by the file they are in; cases.cpp tells what each requires.
 #pragma once
 
 namespace icloth::stability {
@@ -14,7 +14,7 @@ void pinned_inside_a_body(CaseRun& run);
 void huge_coordinates(CaseRun& run);
 void not_finite(CaseRun& run);
 
-// cases_meshes.cpp: what a mesh file can hold
+// cases_meshes.cpp: the oddities that a mesh file can hold
 void slivers(CaseRun& run);
 void bad_vertices(CaseRun& run);
 void non_manifold(CaseRun& run);

@@ -10,7 +10,7 @@
 namespace icloth::stability {
 namespace {
 
-/// A sheet that hangs in the xy plane and a ball that moves along z, from one time to another.
+/// A sheet that hangs in the xy plane, and a ball that moves along z from one time to another.
 std::shared_ptr<Scene> ball_through_sheet(const char* name, bool pinned, double start, double end,
                                           double height) {
   auto scene = new_scene(name, 0.03);
@@ -22,10 +22,11 @@ std::shared_ptr<Scene> ball_through_sheet(const char* name, bool pinned, double 
   return scene;
 }
 
-/// A lying sheet between two boxes; their distance is `closest` at half a second, then larger.
+/// A lying sheet between two boxes. Their distance is `closest` at half a second, and larger later.
 std::shared_ptr<Scene> closing_boxes(const char* name, double closest) {
   auto scene = new_scene(name, 0.02);
   scene->parameters.gravity.y = 0;
+
   scene->cloths = {lying_sheet(0.15, 150, {})};
   for (const double side : {-1.0, 1.0}) {
     scene->obstacles.push_back(make_body(make_box({0.25, 0.02, 0.25}, 0.05), {}));
@@ -36,12 +37,15 @@ std::shared_ptr<Scene> closing_boxes(const char* name, double closest) {
   return scene;
 }
 
-/// A strip over a cylinder along z with legs of two lengths hanging down.
+/// A strip over a cylinder along z, whose legs of two lengths hang down.
 std::shared_ptr<Scene> belt_scene(double left, double right) {
   constexpr double kRadius = 0.05, kEdge = 0.01, kArc = std::numbers::pi * 0.053;
   auto scene = new_scene("belt", kEdge);
+
   const double length = left + kArc + right, bend = kRadius + 3e-3;
   const auto columns = static_cast<Index>(std::lround(length / kEdge));
+
+  // The strip follows the cylinder from one leg to the other.
   std::vector<Vec3d> positions, flat;
   std::vector<Triangle> faces;
   for (Index j = 0; j <= 3; ++j)
@@ -51,6 +55,7 @@ std::shared_ptr<Scene> belt_scene(double left, double right) {
                           : s > kArc ? Vec3d{bend, kArc - s, z}
                                      : Vec3d{-bend * std::cos(angle), bend * std::sin(angle), z};
       positions.push_back(place);
+
       flat.push_back({s, 0, z});
     }
   for (Index j = 0; j < 3; ++j)
@@ -58,14 +63,19 @@ std::shared_ptr<Scene> belt_scene(double left, double right) {
       const Index a = j * (columns + 1) + i, b = a + 1, c = b + columns + 1, d = a + columns + 1;
       faces.insert(faces.end(), {{a, d, c}, {a, c, b}});
     }
+
+  // It was cut flat, and hardly stretches or bends.
   Cloth strip = cloth_of(std::move(positions), std::move(faces));
   strip.rest = std::move(flat);
   strip.material = uniform_fabric(1e3, 0.2, 1e-6);
   scene->cloths = {std::move(strip)};
+
+  // The cylinder is a capsule, turned until its axis lies along z.
   TriangleMesh cylinder = make_capsule(kRadius, 0.1, 3000);
   for (Vec3d& p : cylinder.positions) p = {p.y, p.z, p.x};
   for (Vec3d& p : cylinder.positions) p = {p.y, p.z, p.x};
   scene->obstacles = {make_body(std::move(cylinder), {})};
+
   scene->parameters.proximity.friction_obstacle = 0.3;
   scene->parameters.step.time_step = 0.005;
   return scene;
@@ -91,10 +101,12 @@ void needle(CaseRun& run) {
 void box_corner(CaseRun& run) {
   auto scene = new_scene("sheet on a corner", 0.03);
   TriangleMesh box = make_box({0.2, 0.2, 0.2}, 0.2);
+
   // The space diagonal points up.
   const Mat3<double> turn =
       rotation_matrix(std::acos(1 / std::numbers::sqrt3) * normalized(Vec3d{-1, 0, 1}));
   for (Vec3d& p : box.positions) p = turn * p;
+
   scene->obstacles = {make_body(box, {})};
   scene->cloths = {lying_sheet(0.4, run.brief() ? 200 : 800, {0.013, 0.2, -0.006})};
   run.start(scene);
@@ -102,7 +114,7 @@ void box_corner(CaseRun& run) {
 }
 
 void narrow_gap(CaseRun& run) {
-  // Room for the sheet, below its thickness on each side.
+  // There is room for the sheet, but less than its thickness on each side.
   auto scene = closing_boxes("narrow gap", 0);
   run.start(closing_boxes("narrow gap", 5 * scene->parameters.impact_zones.offset));
   run.run_for(1.0);
@@ -140,7 +152,8 @@ void skirt(CaseRun& run) {
   scene->parameters.step.time_step = 0.05;
   scene->cloths = {make_tube(0.155, 0.38, 0.5, run.brief() ? 1000 : 4000)};
   scene->obstacles = {make_body(make_capsule(0.12, 0.6, 600), {0, -0.25, 0})};
-  // Hips that turn and swing about the waist.
+
+  // Hips turn and swing about the waist.
   for (int k = 0; k <= 100; ++k) {
     const double t = 0.05 * k, ramp = std::fmin(1, t);
     scene->obstacles[0].motion.push_back(
@@ -149,12 +162,13 @@ void skirt(CaseRun& run) {
          {0.25 * ramp * std::sin(2 * kPi * 0.7 * t), 0.8 * ramp * std::sin(2 * kPi * t),
           0.45 * ramp * std::sin(2 * kPi * t)}});
   }
+
   run.start(scene);
   run.run_for(run.brief() ? 1.0 : 5.0);
 }
 
 void belt(CaseRun& run) {
-  // exp(0.3 π) = 2.57: legs of 1 : 1.5 hold, of 1 : 5 do not.
+  // By Euler and Eytelwein exp(0.3 π) = 2.57, so legs of 1 : 1.5 hold and legs of 1 : 5 do not.
   const auto slide = [&](double left, double right) {
     run.start(belt_scene(left, right));
     run.steps(10);
@@ -162,6 +176,7 @@ void belt(CaseRun& run) {
     run.run_for(0.3);
     return run.positions().front().y - before;
   };
+
   const double held = slide(0.3, 0.45), slipped = slide(0.15, 0.75);
   run.require(std::fabs(held) < 0.02, "legs of 1 : 1.5 hold");
   run.require(slipped > 0.05, "legs of 1 : 5 slide");

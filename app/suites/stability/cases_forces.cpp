@@ -10,6 +10,7 @@
 namespace icloth::stability {
 namespace {
 
+/// A sheet that falls on a ball above a floor.
 std::shared_ptr<Scene> sheet_on_ball(const char* name, double size, Index triangles) {
   auto scene = new_scene(name, size * std::sqrt(2.3 / triangles));
   scene->cloths = {lying_sheet(size, triangles, {0.01, 0.112, 0.02})};
@@ -33,11 +34,13 @@ class Dice {
   std::mt19937_64 engine_{20181101};
 };
 
+/// A grab of a face of the first cloth, at the place where it is now.
 InputEvent grab_of_face(const CaseRun& run, const Scene& scene, int handle, Index face) {
   InputEvent grab;
   grab.handle = handle;
   grab.face = face;
   grab.barycentric = {0.2, 0.3, 0.5};
+
   const std::vector<Vec3d> x = run.positions();
   const Triangle& t = scene.cloths[0].mesh.faces[static_cast<std::size_t>(face)];
   const auto corner = [&](std::size_t k) { return x[static_cast<std::size_t>(t[k])]; };
@@ -45,6 +48,7 @@ InputEvent grab_of_face(const CaseRun& run, const Scene& scene, int handle, Inde
   return grab;
 }
 
+/// A move or a release of a handle.
 InputEvent event(InputEvent::Kind kind, int handle, Vec3d target) {
   InputEvent move;
   move.kind = kind;
@@ -61,12 +65,16 @@ struct Hand {
   Vec3d target, velocity;
 };
 
+/// The events of one hand in one step.
 void drag(Hand& hand, Dice& dice, const CaseRun& run, const Scene& scene, double time, double dt,
           std::vector<InputEvent>& events) {
+  // A hold or a pause is over, so the other one begins.
   if (time >= hand.until) {
     if (hand.holds) events.push_back(event(InputEvent::Kind::release, hand.handle, {}));
     hand.holds = !hand.holds;
     hand.until = time + (hand.holds ? dice.between(0.3, 1.5) : dice.between(0.05, 0.4));
+
+    // A new hold goes from a random face towards a random place.
     if (!hand.holds) return;
     const auto faces = static_cast<double>(scene.cloths[0].mesh.faces.size());
     events.push_back(grab_of_face(run, scene, hand.handle, static_cast<Index>(dice() * faces)));
@@ -84,17 +92,23 @@ void drag(Hand& hand, Dice& dice, const CaseRun& run, const Scene& scene, double
 template <int kExponent>
 void stiff(CaseRun& run) {
   const double tensile = std::pow(10.0, kExponent);
+
+  // A stiff sheet hangs by two corners while a ball swings into it.
   auto scene = new_scene("stiff sheet, swinging ball", 0.02);
   const GridShape shape = square(0.4, run.brief() ? 200 : 800, false);
   scene->cloths = {make_cloth(shape, {0, 0.2, 0})};
   scene->cloths[0].material = uniform_fabric(tensile, 0.2, 1e-5);
   pin(scene->cloths[0], shape, "top_left");
   pin(scene->cloths[0], shape, "top_right");
+
   scene->obstacles = {make_body(make_sphere(0.1, 320), {})};
   scene->obstacles[0].motion = {
       {0, {0.02, 0.1, -0.15}, {}}, {0.3, {0.02, 0.1, 0.1}, {}}, {0.6, {0.02, 0.1, -0.15}, {}}};
-  // What friction on the ball holds back is stretched, however stiff it is.
+
+  // Cloth that the ball's friction carries along is stretched however stiff it is, so there is
+  // none.
   scene->parameters.proximity.friction_obstacle = 0;
+
   run.start(scene);
   run.run_for(run.brief() ? 0.3 : 1.0);
   run.require(run.figures().max_strain < (kExponent == 3 ? 0.1 : 0.05),
@@ -110,6 +124,8 @@ void huge_forces(CaseRun& run) {
   auto scene = sheet_on_ball("huge forces", 0.3, 200);
   run.start(scene);
   run.steps(5);
+
+  // Each huge force acts for one step, after which the simulation has to go on as before.
   run.allow_refusals();
   const Parameters sane = run.simulator().parameters();
   for (const double gravity : {-1e4, -1e9}) {
@@ -124,12 +140,16 @@ void huge_forces(CaseRun& run) {
 }
 
 void jerked_grab(CaseRun& run) {
+  // The cloth lies on the ball before the hand comes.
   auto scene = sheet_on_ball("hand at 50 m/s", 0.4, run.brief() ? 200 : 600);
   scene->parameters.grab.max_speed = 50;
   run.start(scene);
   run.run_for(0.2);
+
   const InputEvent grab = grab_of_face(run, *scene, 1, 3);
   run.step(std::vector{grab});
+
+  // The hand goes to random places at the speed limit, as a jerked mouse does.
   Dice dice;
   Vec3d goal = grab.target, target = goal;
   for (int k = 0; k < (run.brief() ? 30 : 200); ++k) {
@@ -144,6 +164,8 @@ void jerked_grab(CaseRun& run) {
 void changed_time_step(CaseRun& run) {
   auto scene = sheet_on_ball("changed time step", 0.4, run.brief() ? 200 : 400);
   run.start(scene);
+
+  // The steps differ by up to three orders of magnitude from one to the next.
   constexpr double kSteps[] = {0.01, 1e-4, 0.1, 1e-3, 0.05, 1e-4, 0.02, 0.1, 0.005};
   for (int k = 0; k < (run.brief() ? 18 : 72); ++k) {
     Parameters p = run.simulator().parameters();
@@ -154,6 +176,7 @@ void changed_time_step(CaseRun& run) {
 }
 
 void threads(CaseRun& run) {
+  // The same run with one thread and with two.
   std::vector<std::uint64_t> hashes[2];
   for (const int count : {1, 2}) {
     set_thread_count(count);
@@ -161,6 +184,7 @@ void threads(CaseRun& run) {
     for (int k = 0; k < (run.brief() ? 30 : 80); ++k)
       hashes[count - 1].push_back(run.step().state_hash);
   }
+
   set_thread_count(run.settings().threads);
   run.require(hashes[0] == hashes[1], "equal states");
 }
@@ -169,6 +193,8 @@ void soak(CaseRun& run) {
   auto scene = sheet_on_ball("random dragging", 0.45, run.brief() ? 200 : 500);
   run.start(scene);
   run.check_every(run.brief() ? 1 : 5);
+
+  // Two hands drag at random for the whole time.
   Dice dice;
   Hand hands[2];
   hands[1].handle = 1;

@@ -11,15 +11,19 @@
 namespace icloth::stability {
 namespace {
 
-/// Two sheets side by side in one plane, the second flies into the first.
+/// Two sheets lie side by side in one plane, and the second one flies into the first.
 void run_coplanar(CaseRun& run, Vec3d rotation, bool proximity) {
   auto scene = new_scene("two sheets in one plane", 0.03);
   scene->parameters.gravity.y = 0;
   scene->parameters.proximity.enabled = proximity;
+
   scene->cloths = {lying_sheet(0.2, 100, {}), lying_sheet(0.2, 100, {0.206, 0, 0.011})};
+
+  // The plane is turned, since planes along the axes are special to boxes.
   const Mat3<double> turn = rotation_matrix(rotation);
   for (Cloth& cloth : scene->cloths)
     for (Vec3d& p : cloth.mesh.positions) p = turn * p;
+
   run.start(scene);
   run.throw_cloth(1, turn * Vec3d{-1, 0, 0});
   run.run_for(run.brief() ? 0.1 : 0.3);
@@ -30,23 +34,26 @@ Cloth zigzag(Index layers, Index columns, Index rows, double edge, double gap) {
   std::vector<Vec3d> folded, flat;
   std::vector<Triangle> faces;
   const Index total = layers * columns;
+
+  // Vertices go to and fro; the folds lie halfway between the layers that they join.
   for (Index j = 0; j <= rows; ++j)
     for (Index i = 0; i <= total; ++i) {
       const Index layer = std::min(i / columns, layers - 1), in_layer = i - layer * columns;
       const bool back = layer % 2 == 1;
       const double x = edge * (back ? columns - in_layer : in_layer);
-      // Folds lie halfway between the layers that they join.
       const double half = in_layer == 0 && layer > 0                  ? -0.5
                           : in_layer == columns && layer < layers - 1 ? 0.5
                                                                       : 0;
       folded.push_back({x, gap * (1 + layer + half), -edge * j});
       flat.push_back({edge * i, 0, -edge * j});
     }
+
   for (Index j = 0; j < rows; ++j)
     for (Index i = 0; i < total; ++i) {
       const Index a = j * (total + 1) + i, b = a + 1, c = b + total + 1, d = a + total + 1;
       faces.insert(faces.end(), {{a, b, c}, {a, c, d}});
     }
+
   Cloth cloth = cloth_of(std::move(folded), std::move(faces));
   cloth.rest = std::move(flat);
   return cloth;
@@ -88,6 +95,8 @@ void funnel(CaseRun& run) {
 void heavy_on_light(CaseRun& run) {
   auto scene = new_scene("20 layers", 0.03);
   const double gap = 1.5 * scene->parameters.proximity.thickness;
+
+  // Light layers lie on each other, a little shifted, with a heavy one on top.
   for (int layer = 0; layer < 20; ++layer) {
     const bool heavy = layer == 19;
     const double shift = 0.002 * (layer % 3);

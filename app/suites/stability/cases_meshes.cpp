@@ -1,4 +1,4 @@
-// What a mesh file can hold that no weaver would make.
+// Meshes that a file can hold and that no weaver would make.
 #include <cmath>
 
 #include "app/suites/stability/case_run.h"
@@ -11,7 +11,7 @@
 namespace icloth::stability {
 namespace {
 
-/// Rectangle in the xz plane of columns × rows cells, each cut by a diagonal.
+/// A rectangle in the xz plane of columns × rows cells, each cut by a diagonal.
 Cloth strip_mesh(Vec3d corner, double width, double depth, Index columns, Index rows) {
   std::vector<Vec3d> positions;
   std::vector<Triangle> faces;
@@ -29,7 +29,8 @@ Cloth strip_mesh(Vec3d corner, double width, double depth, Index columns, Index 
 }  // namespace
 
 void slivers(CaseRun& run) {
-  // Cells 30 mm wide and 0.03 mm deep between ordinary ones: aspect 1000, area 5e-7 m².
+  // Cells 30 mm wide and 0.03 mm deep lie between ordinary ones: their aspect is 1000, their area
+  // 5e-7 m².
   auto scene = new_scene("slivers", 0.03);
   Cloth cloth = strip_mesh({-0.15, 0.11, 0.15}, 0.3, 0.3, 10, 11);
   for (Vec3d& p : cloth.mesh.positions) {
@@ -52,6 +53,7 @@ void slivers(CaseRun& run) {
 
 void bad_vertices(CaseRun& run) {
   const std::vector<Vec3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
   const auto refused = [&](std::vector<Vec3d> x, std::vector<Triangle> faces, const char* element,
                            const char* in_file) {
     auto scene = new_scene("bad vertices", 0.03);
@@ -60,12 +62,14 @@ void bad_vertices(CaseRun& run) {
     // Elements of files are counted from one, as editors do.
     run.require_input_error([&] { check_cloth_mesh(scene->cloths[0].mesh, "mesh"); }, {in_file});
   };
+
+  // Each mesh has one fault, which the message must name.
   refused(square, {{0, 1, 2}}, "vertex 3", "vertex");
   refused(square, {{0, 1, 2}, {0, 2, 2}, {0, 2, 3}}, "face 1", "triangle");
   refused({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 3}, {0, 1, 2}}, "face 1",
           "triangle");
 
-  // A vertex given twice leaves a slit whose sides touch.
+  // A vertex that is given twice leaves a slit whose sides touch.
   auto twice = new_scene("vertex given twice", 0.03);
   std::vector<Vec3d> x = square;
   x.insert(x.end(), {square[0], square[2]});
@@ -75,19 +79,22 @@ void bad_vertices(CaseRun& run) {
 }
 
 void non_manifold(CaseRun& run) {
-  // Three leaves that share their middle edges, as a book.
+  // Three leaves share their middle edges, as in a book.
   auto scene = new_scene("three leaves", 0.03);
   Cloth book = strip_mesh({-0.15, 0.12, 0.15}, 0.3, 0.3, 10, 10);
+
   const auto first = static_cast<Index>(book.mesh.positions.size());
   for (Index j = 0; j <= 10; ++j)
     for (Index i = 1; i <= 5; ++i)
       book.mesh.positions.push_back({0.002 * i, 0.12 + 0.03 * i, 0.15 - 0.03 * j});
+
   const auto leaf = [&](Index i, Index j) { return i == 0 ? j * 11 + 5 : first + j * 5 + i - 1; };
   for (Index j = 0; j < 10; ++j)
     for (Index i = 0; i < 5; ++i) {
       const Index a = leaf(i, j), b = leaf(i + 1, j), c = leaf(i + 1, j + 1), d = leaf(i, j + 1);
       book.mesh.faces.insert(book.mesh.faces.end(), {{a, b, c}, {a, c, d}});
     }
+
   book.rest = book.mesh.positions;
   scene->cloths = {book};
   scene->obstacles = {make_body(make_sphere(0.1, 320), {})};
@@ -105,7 +112,7 @@ void t_junction(CaseRun& run) {
 }
 
 void seam(CaseRun& run) {
-  // A tube whose pattern is a rectangle: material coordinates jump by its width at the seam.
+  // The pattern of the tube is a rectangle: material coordinates jump by its width at the seam.
   auto scene = new_scene("tube with a seam", 0.02);
   Cloth tube = make_tube(0.1, 0.1, 0.3, run.brief() ? 300 : 1000);
   scene->cloths = {tube};

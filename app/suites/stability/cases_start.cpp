@@ -12,17 +12,19 @@
 namespace icloth::stability {
 namespace {
 
+/// The number of pairs that intersect at the start.
 std::size_t start_pairs(const Scene& scene, const CaseRun& run) {
   return find_start_intersections(scene, run.settings().build != Build::cpu64).size();
 }
 
+/// The height of the highest of the first `count` points.
 double highest(const std::vector<Vec3d>& points, std::size_t count) {
   double y = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) y = std::max(y, points[i].y);
   return y;
 }
 
-/// Of the vertices of the first cloth.
+/// The mean height of the vertices of the first cloth.
 double mean_height(const std::vector<Vec3d>& points, const Scene& scene) {
   const std::size_t count = scene.cloths[0].mesh.positions.size();
   double sum = 0;
@@ -35,28 +37,35 @@ std::string millimetres(double length) { return std::to_string(1e3 * length) + "
 }  // namespace
 
 void start_intersection(CaseRun& run) {
+  // Cloth through cloth.
   auto sheets = new_scene("crossing sheets", 0.03);
   sheets->cloths = {lying_sheet(0.3, 200, {}), hanging_sheet(0.3, 200, {0.01, 0.013, 0.007})};
   const std::size_t cloth = start_pairs(*sheets, run);
   run.require(cloth > 0, "crossing sheets are found");
+
+  // Cloth through a body.
   auto ball = new_scene("sheet through a ball", 0.03);
   ball->cloths = {lying_sheet(0.3, 200, {})};
   ball->obstacles = {make_body(make_sphere(0.1, 320), {0, 0.03, 0})};
   const std::size_t body = start_pairs(*ball, run);
   run.require(body > 0, "a sheet through a ball is found");
+
   run.note(std::to_string(cloth) + " and " + std::to_string(body) + " pairs");
 }
 
 void start_below_offset(CaseRun& run) {
+  // The layers are closer than the offset that impact zones keep.
   auto scene = new_scene("close sheets", 0.03);
   Parameters& p = scene->parameters;
   const double gap = 0.1 * p.impact_zones.offset;
   scene->cloths = {lying_sheet(0.3, 200, {}), lying_sheet(0.3, 200, {0.002, gap, 0.001}),
                    lying_sheet(0.3, 200, {0, 2 * gap, 0})};
   scene->obstacles = {make_body(make_box({0.5, 0.1, 0.5}, 0.1), {0, -0.05 - gap, 0})};
+
   run.start(scene);
   run.run_for(run.brief() ? 0.2 : 0.5);
-  // The thickness of three layers, and no jump.
+
+  // The top has the height of three layers, and has not jumped.
   const double top = highest(run.positions(), 3 * scene->cloths[0].mesh.positions.size());
   run.require(top < 4 * p.proximity.thickness + 0.01, "the sheets stay on each other");
   run.note("gap " + millimetres(gap) + ", ends " + millimetres(top) + " high");
@@ -72,6 +81,7 @@ void start_inside_a_body(CaseRun& run) {
   scene->obstacles = {make_body(make_sphere(0.2, 720), {})};
   run.start(scene);
   run.run_for(run.brief() ? 0.3 : 1.0);
+
   double farthest = 0;
   const std::vector<Vec3d> x = run.positions();
   for (std::size_t i = 0; i < scene->cloths[0].mesh.positions.size(); ++i)
@@ -80,6 +90,7 @@ void start_inside_a_body(CaseRun& run) {
 }
 
 void thin_gap(CaseRun& run) {
+  // The gap is far below the thickness, which is far above the offset.
   auto scene = new_scene("sheet close over a box", 0.03);
   Parameters& p = scene->parameters;
   p.proximity.thickness = 8e-3;
@@ -87,12 +98,16 @@ void thin_gap(CaseRun& run) {
   const double gap = 2e-4;
   scene->cloths = {lying_sheet(0.3, 200, {0, gap, 0})};
   scene->obstacles = {make_body(make_box({0.5, 0.1, 0.5}, 0.05), {0, -0.05, 0})};
+
   run.start(scene);
+
+  // The repulsion may lift the sheet by the thickness, but must not throw it.
   double top = 0, speed = 0;
   for (int k = 0; k < (run.brief() ? 30 : 100); ++k) {
     speed = std::max(speed, run.step().max_speed);
     top = std::max(top, highest(run.positions(), scene->cloths[0].mesh.positions.size()));
   }
+
   run.require(top < 2 * p.proximity.thickness,
               "the sheet is not thrown higher than twice the thickness");
   run.note("rises to " + millimetres(top) + ", " + std::to_string(speed) + " m/s");
@@ -116,6 +131,7 @@ void pinned_inside_a_body(CaseRun& run) {
 }
 
 void huge_coordinates(CaseRun& run) {
+  // The same scene moves away from the origin, until single precision cannot hold it.
   double at_origin = 0;
   for (const double far : {0.0, 10.0, 100.0, 1e3, 1e4, 1e6}) {
     const Vec3d place{far, far, far};
@@ -123,12 +139,16 @@ void huge_coordinates(CaseRun& run) {
     scene->cloths = {lying_sheet(0.3, 200, place + Vec3d{0, 0.11, 0})};
     scene->obstacles = {make_body(make_sphere(0.1, 320), place)};
     const std::string where = " at " + std::to_string(std::lround(far)) + " m";
+
+    // Either it is refused …
     try {
       make_simulator(run.settings().build, scene);
     } catch (const InputError&) {
       run.note("refused" + where);
       continue;
     }
+
+    // … or it must come to rest as it does at the origin.
     run.start(scene);
     run.run_for(run.brief() ? 0.2 : 0.5);
     const double height = mean_height(run.positions(), *scene) - far;
@@ -138,6 +158,7 @@ void huge_coordinates(CaseRun& run) {
 }
 
 void not_finite(CaseRun& run) {
+  // One vertex of a cloth or a body is broken.
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto broken = [](double value, bool obstacle) {
     auto scene = new_scene("broken", 0.03);
@@ -146,14 +167,17 @@ void not_finite(CaseRun& run) {
     (obstacle ? scene->obstacles[0].mesh : scene->cloths[0].mesh).positions[7].y = value;
     return scene;
   };
+
   for (const double value : {kNan, std::numeric_limits<double>::infinity()})
     for (const bool obstacle : {false, true})
       run.require_input_error(
           [&] { make_simulator(run.settings().build, broken(value, obstacle)); },
           {"vertex 7", "finite"});
 
+  // A parameter that becomes NaN makes the step be refused, and nothing more.
   run.start(broken(0.11, false));
   run.steps(5);
+
   const Parameters sane = run.simulator().parameters();
   Parameters wrong = sane;
   wrong.gravity.y = kNan;
@@ -161,6 +185,7 @@ void not_finite(CaseRun& run) {
   run.simulator().set_parameters(wrong);
   const StepReport refused = run.step();
   run.require(!refused.accepted && !refused.finite, "NaN gravity is refused");
+
   run.simulator().set_parameters(sane);
   run.require(run.steps(run.brief() ? 10 : 30), "the simulation goes on after NaN gravity");
 }

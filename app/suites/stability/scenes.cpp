@@ -49,16 +49,20 @@ void pin(Cloth& cloth, const GridShape& shape, const char* name) {
 }
 
 Cloth make_tube(double top, double bottom, double length, Index triangles) {
+  // The columns and rows make triangles that are nearly equilateral.
   const double around = std::numbers::pi * (top + bottom);
   const double edge = std::sqrt(4 / std::numbers::sqrt3 * around * length / triangles);
   const auto columns = static_cast<Index>(std::max(6.0, std::round(around / edge)));
   const auto rows =
       static_cast<Index>(std::max(1.0, std::round(length / (edge * std::numbers::sqrt3 / 2))));
+
   Cloth cloth;
   cloth.name = "tube";
   const auto flat = [&](double turn, Index row) {
     return Vec2d{turn * around, -length * row / rows};
   };
+
+  // Rings of vertices, every second one turned by half a column; the first ring is pinned.
   for (Index row = 0; row <= rows; ++row) {
     const double s = static_cast<double>(row) / rows, radius = top + s * (bottom - top);
     for (Index i = 0; i < columns; ++i) {
@@ -69,12 +73,16 @@ Cloth make_tube(double top, double bottom, double length, Index triangles) {
     if (row == 0)
       for (Index i = 0; i < columns; ++i) cloth.pins.push_back(i);
   }
+
+  // Two triangles for every vertex of a row, with material coordinates that do not wrap round.
   for (Index row = 0; row < rows; ++row) {
     const Index upper = row * columns, lower = upper + columns, odd = row % 2;
     for (Index i = 0; i < columns; ++i) {
       const Index next = (i + 1) % columns;
       const auto uv = [&](double column, Index r) { return flat(column / columns, r); };
       const double a = i + 0.5 * odd, b = i + 0.5 * (1 - odd);
+
+      // The two kinds of rows are turned against each other.
       if (odd == 0) {
         cloth.mesh.faces.push_back({upper + i, upper + next, lower + i});
         cloth.mesh.uv.push_back({uv(a, row), uv(a + 1, row), uv(b, row + 1)});
@@ -88,7 +96,8 @@ Cloth make_tube(double top, double bottom, double length, Index triangles) {
       }
     }
   }
-  // A cone is no rectangle: its pattern is each triangle laid flat.
+
+  // A cone is no rectangle, so each of its triangles is laid flat by itself.
   if (top != bottom) cloth.mesh.uv.clear();
   cloth.rest = cloth.mesh.positions;
   cloth.material = load_material("default", "");
@@ -110,7 +119,7 @@ Material uniform_fabric(double tensile, double density, double bending) {
   material.name = "uniform";
   material.law = Material::Law::orthotropic;
   material.density = density;
-  // Stiffness on Green strain is twice the table: E = k11 (1 − ν²) with ν = 0.25.
+  // The stiffness on Green strain is twice the table: E = k11 (1 − ν²) with ν = 0.25.
   const double k = tensile / (1 - 0.25 * 0.25);
   for (auto& row : material.stretching) row = {k / 2, 0.25 * k / 2, k / 2, 0.75 * k / 2};
   for (auto& row : material.bending) row.fill(bending);
@@ -128,10 +137,12 @@ Obstacle make_body(TriangleMesh mesh, Vec3d centre) {
 TriangleMesh make_spike(double radius, double length, Index sides) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {0, -length, 0}};
+
   for (Index i = 0; i < sides; ++i) {
     const double angle = 2 * std::numbers::pi * i / sides;
     mesh.positions.push_back({radius * std::cos(angle), -length, -radius * std::sin(angle)});
   }
+
   for (Index i = 0; i < sides; ++i) {
     const Index a = 2 + i, b = 2 + (i + 1) % sides;
     mesh.faces.push_back({0, a, b});

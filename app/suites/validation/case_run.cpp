@@ -26,6 +26,7 @@ void CaseRun::steps(int count) {
 }
 
 void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<Vec3d>& velocities) {
+  // An older state would let the second-order integrator see a jump.
   Snapshot state = simulator_->snapshot();
   state.positions = positions;
   state.velocities = velocities;
@@ -35,6 +36,7 @@ void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<V
 }
 
 void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit) {
+  // Each step is one Newton iteration, damped by mass/dt².
   const Parameters before_all = parameters();
   Parameters p = before_all;
   p.step.time_step = dt_first;
@@ -45,12 +47,15 @@ void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit
     step();
     const std::vector<Vec3d> after = positions();
     double moved = 0;
+
+    // The motion is taken out, so that the next step starts at rest.
     for (std::size_t v = 0; v < after.size(); ++v)
       moved = std::max(moved, norm(after[v] - before[v]));
     set_state(after, {});
     if (p.step.time_step >= dt_last && moved < tolerance) return set_parameters(before_all);
     p.step.time_step = std::min(1.2 * p.step.time_step, dt_last);
   }
+
   set_parameters(before_all);
   require(false, "at rest after " + std::to_string(limit) + " steps");
 }

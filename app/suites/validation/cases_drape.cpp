@@ -14,20 +14,23 @@ namespace {
 
 constexpr double kPi = std::numbers::pi, kDisc = 0.09, kSpecimen = 0.15;
 
-/// Ring of cloth from inside the clamping disc to the border of the specimen, in rings of vertices
-/// about `edge` apart; every second ring is turned by half a step. The first two are clamped; the
-/// border of the disc is in the middle between them, where the tangent is level: with the second
-/// ring on the border itself the overhang would bend as if it were half an edge longer.
+/// A ring of cloth from inside the clamping disc to the border of the specimen, in rings of
+/// vertices about `edge` apart; every second ring is turned by half a step. The first two rings are
+/// clamped. The border of the disc is in the middle between them, where the tangent is level: with
+/// the second ring on the border itself the overhang would bend as if it were half an edge longer.
 Cloth ring_cloth(double edge, const Material& material, int specimen) {
   Cloth cloth;
   cloth.name = "specimen";
   cloth.material = material;
+
+  // The rings of vertices.
   const auto rings = static_cast<Index>(std::lround((kSpecimen - kDisc) / edge)) + 1;
   const double step = (kSpecimen - kDisc) / (rings - 0.5);
   struct Ring {
     Index first, count;
     double phase;
   };
+
   std::vector<Ring> list;
   for (Index r = 0; r <= rings; ++r) {
     const double radius = kDisc + (r - 0.5) * step;
@@ -41,6 +44,8 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
     }
     list.push_back(ring);
   }
+
+  // The faces between two rings advance on whichever ring is behind.
   const auto add = [&](Index a, Index b, Index c) {
     const auto uv = [&](Index v) {
       const Vec3d p = cloth.rest[static_cast<std::size_t>(v)];
@@ -49,6 +54,7 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
     cloth.mesh.faces.push_back({a, b, c});
     cloth.mesh.uv.push_back({uv(a), uv(b), uv(c)});
   };
+
   for (std::size_t r = 0; r + 1 < list.size(); ++r) {
     const Ring &in = list[r], &out = list[r + 1];
     const auto middle = [](const Ring& ring, Index i) {
@@ -62,9 +68,10 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
         add(a, b, out.first + ++j % out.count);
     }
   }
+
   cloth.mesh.positions = cloth.rest;
-  // Folds begin somewhere: uneven by a tenth of a millimetre, the same on every mesh. The next
-  // specimen is turned and lies on its other face.
+  // Folds begin somewhere, so the specimen is uneven by a tenth of a millimetre, the same on every
+  // mesh. The next specimen is turned and lies on its other face.
   const double side = specimen % 2 == 0 ? 1e-4 : -1e-4;
   for (Vec3d& p : cloth.mesh.positions) {
     const double angle = std::atan2(p.z, p.x) + specimen, out = std::hypot(p.x, p.z) - kDisc;
@@ -75,7 +82,7 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
   return cloth;
 }
 
-/// Area of the shadow on the ground [m²], by squares of half a millimetre.
+/// The area of the shadow on the ground [m²], by squares of half a millimetre.
 double shadow(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
   Shadow ground({-0.16, -0.16}, {0.16, 0.16}, 5e-4);
   ground.add(x, faces);
@@ -83,14 +90,15 @@ double shadow(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
   return ground.area();
 }
 
-/// Drape coefficient [%] of a fabric at rest, of one specimen. It is let down gently, for 1.5 s in
-/// air as heavy as water (some 6 cm/s), then left in that of the scene: yarns that rub hold the
-/// cloth where it first can rest, and a specimen that drops swings below that and stays there
+/// The drape coefficient [%] of a fabric at rest, of one specimen. It is let down gently, for 1.5 s
+/// in air as heavy as water (some 6 cm/s), then left in the air of the scene. Yarns that rub hold
+/// the cloth where it first can rest, and a specimen that drops swings below that and stays there
 /// (docs/deviations.md).
 double drape_of(CaseRun& run, const Material& material, double edge, int specimen) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "drape of " + material.name;
   scene->cloths = {ring_cloth(edge, material, specimen)};
+
   Parameters& p = scene->parameters;
   p.step.time_step = 0.02;
   const double air = p.wind.air_density;
@@ -98,14 +106,19 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
   p.proximity.thickness = 1e-3;
   p.impact_zones.offset = 1e-4;
   run.start(scene);
+
   const auto coefficient = [&] {
     const double disc = kPi * kDisc * kDisc, whole = kPi * kSpecimen * kSpecimen;
     return 100 * (shadow(run.positions(), scene->cloths[0].mesh.faces) - disc) / (whole - disc);
   };
+
+  // The heavy air lets it down; the scene's own air then lets it come to rest.
   run.steps(75);
   Parameters still = run.parameters();
   still.wind.air_density = air;
   run.set_parameters(still);
+
+  // It is at rest when the coefficient changes by less than 0.1 points in 15 steps.
   double last = 100, now = 0;
   for (int k = 0; k < 20; ++k) {
     run.steps(15);
@@ -117,16 +130,16 @@ double drape_of(CaseRun& run, const Material& material, double edge, int specime
   return now;
 }
 
-/// Mean over specimens.
+/// The mean over specimens.
 double mean_drape(CaseRun& run, const Material& material, double edge, int specimens) {
   double sum = 0;
   for (int k = 0; k < specimens; ++k) sum += drape_of(run, material, edge, k);
   return sum / specimens;
 }
 
-/// Peirce's bending length (D/ρg)^(1/3) [cm], D the moment over the curvature, averaged over the
-/// directions and the curvatures above 0 that were measured; that of the friction included, which
-/// holds up the strip with which the length is measured as well.
+/// Peirce's bending length (D/ρg)^(1/3) [cm], where D is the moment over the curvature, averaged
+/// over the directions and the curvatures above 0 that were measured. The moment of the friction is
+/// included, since it holds up the strip with which the length is measured as well.
 double bending_length(const Material& material) {
   double modulus = 0;
   constexpr double kWeights[] = {0.25, 0.5, 0.25};  // along weft, across, along warp
@@ -141,17 +154,20 @@ double bending_length(const Material& material) {
 
 }  // namespace
 
-/// A round specimen of 30 cm clamped between discs of 18 cm; the drape coefficient is DC = (shadow
-/// − disc)/(specimen − disc). Sources: of denim, the one measured fabric that is woven as a
-/// published class of fabrics, DC is 70 to 90 %; after Peirce and Cusick DC grows with the bending
-/// length (shear being alike), which is required of pairs whose lengths differ by more than a
-/// tenth. Protocol: the measured fabrics are let down from level for 1.5 s in air of 1000 kg/m³ and
-/// come to rest in air (less than 0.1 points in 0.3 s), with edges of 2.5 mm; of 5 mm within 3
-/// points of that. As with the real drapemeter each figure is the mean of several specimens and
-/// both faces, here of four. In brief: edges of 5 mm, one specimen, two fabrics.
+/// A round specimen of 30 cm is clamped between discs of 18 cm; the drape coefficient is DC =
+/// (shadow − disc)/(specimen − disc). Sources: for denim, the one measured fabric that is woven as
+/// a published class of fabrics, DC is 70 to 90 %. After Peirce and Cusick DC grows with the
+/// bending length (shear being alike), which is required of pairs whose lengths differ by more than
+/// a tenth. Protocol: the measured fabrics are let down from level for 1.5 s in air of 1000 kg/m³
+/// and come to rest in air (less than 0.1 points in 0.3 s), with edges of 2.5 mm; edges of 5 mm
+/// must give the same within 3 points. As with the real drapemeter each number is the mean of
+/// several specimens and both faces, here of four. The brief form has edges of 5 mm, one specimen
+/// and two fabrics.
 void drape(CaseRun& run) {
   const int specimens = run.brief() ? 1 : 4;
   std::vector<std::pair<double, double>> seen;  // bending length, DC
+
+  // Each fabric is measured, and compared with a coarser mesh of itself.
   for (const std::string name : {"gray-interlock", "11oz-black-denim", "ivory-rib-knit",
                                  "camel-ponte-roma", "white-dots-on-blk", "pink-ribbon-brown"}) {
     if (run.brief() && seen.size() == 2) break;
@@ -163,6 +179,8 @@ void drape(CaseRun& run) {
     if (name == "11oz-black-denim") run.compare_absolute(name + ", DC [%]", 80, measured, 10);
     seen.emplace_back(bending_length(material), measured);
   }
+
+  // Fabrics of clearly different bending lengths must drape in their order.
   int pairs = 0, ordered = 0;
   for (const auto& [length, measured] : seen)
     for (const auto& [longer, other] : seen)

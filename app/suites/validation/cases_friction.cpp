@@ -23,6 +23,7 @@ struct Patch {
   double ground_edge = 0.05;  ///< [m]
 };
 
+/// A ground of cloth, all of whose vertices are pinned.
 Cloth pinned_ground(double edge) {
   const Index rows = static_cast<Index>(std::lround(1.4 / (edge * std::sqrt(0.75))));
   const Strip strip{1.4, rows, static_cast<Index>(std::lround(0.3 / edge))};
@@ -41,6 +42,7 @@ Cloth pinned_ground(double edge) {
 void lay(CaseRun& run, const Patch& patch) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "patch on a plane";
+
   Parameters& p = scene->parameters;
   p.wind.air_density = 0;
   p.proximity.thickness = kThickness;
@@ -48,7 +50,8 @@ void lay(CaseRun& run, const Patch& patch) {
   p.step.time_step = patch.dt;
   p.proximity.friction_obstacle = p.proximity.friction_cloth = patch.friction;
   const Strip strip{0.1, patch.rows, std::max<Index>(1, patch.rows * 9 / 10)};
-  // Not along the edges of the ground, so that pairs change while it slides.
+
+  // The patch is turned against the edges of the ground, so that pairs change while it slides.
   const double turn = 0.2, c = std::cos(turn), s = std::sin(turn);
   scene->cloths = {strip_cloth(
       strip,
@@ -56,6 +59,8 @@ void lay(CaseRun& run, const Patch& patch) {
         return Vec3d{c * v - s * u, 0.999 * kThickness, s * v + c * u};
       },
       plain_fabric(1000, 0.25, 0.2, 1e-5))};
+
+  // The ground is a pinned cloth or an obstacle of the same size.
   if (patch.ground == Ground::cloth) {
     scene->cloths.push_back(pinned_ground(patch.ground_edge));
   } else {
@@ -65,6 +70,7 @@ void lay(CaseRun& run, const Patch& patch) {
     for (Vec3d& x : ground.mesh.positions) x.x += 0.4;
     scene->obstacles = {ground};
   }
+
   run.start(scene);
   run.steps(static_cast<int>(std::lround(0.3 / patch.dt)));
 }
@@ -78,7 +84,7 @@ void incline(CaseRun& run, double tangent) {
   run.set_parameters(p);
 }
 
-/// Mean position and velocity of the patch along x, mass-weighted.
+/// The mean position and velocity of the patch along x, weighted by mass.
 struct Motion {
   double place = 0, speed = 0;
 };
@@ -96,7 +102,7 @@ Motion motion(CaseRun& run) {
   return {sum.place / total, sum.speed / total};
 }
 
-/// Way after `time` on a ground inclined by atan(tangent) [m].
+/// The displacement after `time` on a ground inclined by atan(tangent) [m].
 double slide(CaseRun& run, const Patch& patch, double tangent, double time) {
   lay(run, patch);
   const double start = motion(run).place;
@@ -105,8 +111,8 @@ double slide(CaseRun& run, const Patch& patch, double tangent, double time) {
   return motion(run).place - start;
 }
 
-/// Way of a body under Coulomb friction, as backward Euler with steps dt sums it up (dt = 0: the
-/// continuous one).
+/// The displacement of a body under Coulomb friction, as backward Euler with steps dt sums it up
+/// (dt = 0: the continuous one).
 double coulomb_way(double tangent, double friction, double time, double dt) {
   const double angle = std::atan(tangent);
   const double a = kGravity * (std::sin(angle) - friction * std::cos(angle));
@@ -120,12 +126,16 @@ void threshold(CaseRun& run, Ground ground) {
     Patch patch;
     patch.ground = ground;
     patch.friction = friction;
+
+    // Just below the threshold the patch must not creep.
     lay(run, patch);
     incline(run, 0.99 * friction);
     run.steps(190);
     const double before = motion(run).place;
     run.steps(10);
     run.bound("creep at 0.99 mu after 1 s [m/s]" + mu, (motion(run).place - before) / 0.05, 1e-4);
+
+    // Just above it, it must slide as fast as the difference of the forces says.
     run.compare("way in 1 s at 1.01 mu [m]" + mu,
                 coulomb_way(1.01 * friction, friction, 1, patch.dt),
                 slide(run, patch, 1.01 * friction, 1), 0.25);
@@ -134,8 +144,10 @@ void threshold(CaseRun& run, Ground ground) {
 
 void sliding(CaseRun& run, Ground ground) {
   const double tangent = std::tan(20 * 3.14159265358979323846 / 180);
+
   const std::vector<double> frictions = run.brief() ? std::vector{0.3} : std::vector{0.1, 0.2, 0.3};
   for (const double friction : frictions) {
+    // Against the continuous formula, for several coefficients.
     Patch patch;
     patch.ground = ground;
     patch.friction = friction;
@@ -143,6 +155,8 @@ void sliding(CaseRun& run, Ground ground) {
     run.compare("way at 20 degrees [m], mu = " + number(friction),
                 coulomb_way(tangent, friction, time, 0), slide(run, patch, tangent, time), 0.01);
   }
+
+  // Against the formula of backward Euler, for several time steps.
   Patch patch;
   patch.ground = ground;
   for (const int rate : {50, 100, 400}) {
@@ -151,6 +165,8 @@ void sliding(CaseRun& run, Ground ground) {
     run.compare("the same of backward Euler, dt = 1/" + std::to_string(rate),
                 coulomb_way(tangent, 0.3, 0.6, patch.dt), slide(run, patch, tangent, 0.6), 0.01);
   }
+
+  // The same for several meshes of the patch and of the ground.
   patch.dt = 0.005;
   for (const Index rows : {2, 8, 16}) {
     if (run.brief() && rows == 16) continue;
@@ -163,6 +179,7 @@ void sliding(CaseRun& run, Ground ground) {
 
 void stopping(CaseRun& run, Ground ground) {
   for (const double speed : {0.5, 1.5}) {
+    // The patch lies at rest and is then thrown.
     Patch patch;
     patch.ground = ground;
     lay(run, patch);
@@ -171,6 +188,8 @@ void stopping(CaseRun& run, Ground ground) {
     const std::size_t count = run.simulator().scene().cloths[0].mesh.positions.size();
     for (std::size_t i = 0; i < count; ++i) state.velocities[i].x += speed;
     run.simulator().restore(state);
+
+    // Backward Euler applies the friction of a step to the velocity before the displacement.
     double way = 0;
     for (double v = speed - 0.3 * kGravity * patch.dt; v > 0; v -= 0.3 * kGravity * patch.dt)
       way += v * patch.dt;
@@ -184,20 +203,21 @@ void stopping(CaseRun& run, Ground ground) {
 }  // namespace
 
 /// A patch of cloth on an inclined ground, an obstacle or a pinned cloth. Source: Coulomb's law
-/// with equal static and kinetic coefficients: at rest iff tan α ≤ μ. Protocol: the patch settles
-/// on the level ground, then gravity turns at once. At tan α = 0.99 μ the mean speed after 1 s;
-/// at 1.01 μ the way in 1 s (1 % of friction is all of it, hence the wide target).
+/// with equal static and kinetic coefficients, at rest iff tan α ≤ μ. Protocol: the patch settles
+/// on the level ground, then gravity turns at once. Measured are the mean speed after 1 s at tan α
+/// = 0.99 μ, and the displacement in 1 s at 1.01 μ (1 % of the friction decides all of it, hence
+/// the wide target).
 void threshold_on_body(CaseRun& run) { threshold(run, Ground::obstacle); }
 void threshold_on_cloth(CaseRun& run) { threshold(run, Ground::cloth); }
 
-/// The same patch, sliding. Source: x = ½ g (sin α − μ cos α) t², of which backward Euler makes
-/// ½ a t (t + dt). Protocol: 20°, dt = 1/200 s against the continuous formula; steps from 1/50 to
-/// 1/400 s and meshes from 2 to 16 rows (and other edges of the ground) against the discrete one.
+/// The same patch slides. Source: x = ½ g (sin α − μ cos α) t², of which backward Euler makes ½ a t
+/// (t + dt). Protocol: 20°, dt = 1/200 s against the continuous formula; steps from 1/50 to 1/400 s
+/// and meshes from 2 to 16 rows (and other edges of the ground) against the discrete one.
 void sliding_on_body(CaseRun& run) { sliding(run, Ground::obstacle); }
 void sliding_on_cloth(CaseRun& run) { sliding(run, Ground::cloth); }
 
-/// Thrown along the level ground. Source: v0²/(2 μ g), as backward Euler sums it up: Σ v_n dt with
-/// v_n = v0 − n μ g dt; then rest.
+/// The patch is thrown along the level ground. Source: v0²/(2 μ g), as backward Euler sums it up, Σ
+/// v_n dt with v_n = v0 − n μ g dt; then it rests.
 void stopping_on_body(CaseRun& run) { stopping(run, Ground::obstacle); }
 void stopping_on_cloth(CaseRun& run) { stopping(run, Ground::cloth); }
 

@@ -7,7 +7,7 @@
 namespace icloth::validation {
 namespace {
 
-/// Root of an increasing function in [low, high].
+/// The root of an increasing function in [low, high], by bisection.
 template <class Function>
 double root(const Function& f, double low, double high) {
   for (int k = 0; k < 200; ++k) {
@@ -17,7 +17,7 @@ double root(const Function& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/// Classical Runge–Kutta, `count` steps over [0, 1].
+/// Integrates from 0 to 1 in `count` steps of the classical Runge–Kutta method.
 template <std::size_t N, class Function>
 std::array<double, N> integrate(std::array<double, N> y, int count, const Function& f) {
   const double h = 1.0 / count;
@@ -35,10 +35,11 @@ std::array<double, N> integrate(std::array<double, N> y, int count, const Functi
   return y;
 }
 
-/// One Newton step for residual(u, parameter) = 0 with difference quotients.
+/// Makes one Newton step for residual(u, parameter) = 0 with difference quotients.
 template <std::size_t N, class Function>
 std::array<double, N> newton_step(const Function& residual, std::array<double, N> u,
                                   double parameter) {
+  // The right side, and the Jacobian column by column.
   const std::array<double, N> r = residual(u, parameter);
   std::array<std::array<double, N + 1>, N> rows;
   for (std::size_t i = 0; i < N; ++i) rows[i][N] = -r[i];
@@ -49,17 +50,21 @@ std::array<double, N> newton_step(const Function& residual, std::array<double, N
     const std::array<double, N> there = residual(moved, parameter);
     for (std::size_t i = 0; i < N; ++i) rows[i][j] = (there[i] - r[i]) / h;
   }
-  for (std::size_t c = 0; c < N; ++c) {  // Gauss and Jordan, with pivots
+
+  // The linear system is solved by Gauss and Jordan's method with pivots.
+  for (std::size_t c = 0; c < N; ++c) {
     std::size_t pivot = c;
     for (std::size_t i = c + 1; i < N; ++i)
       if (std::fabs(rows[i][c]) > std::fabs(rows[pivot][c])) pivot = i;
     std::swap(rows[c], rows[pivot]);
+
     for (std::size_t i = 0; i < N; ++i) {
       if (i == c) continue;
       const double factor = rows[i][c] / rows[c][c];
       for (std::size_t j = c; j <= N; ++j) rows[i][j] -= factor * rows[c][j];
     }
   }
+
   for (std::size_t i = 0; i < N; ++i) u[i] += rows[i][N] / rows[i][i];
   return u;
 }
@@ -76,7 +81,7 @@ std::array<double, 4> pressed_end(const PressedElastica& e, double s) {
 }  // namespace
 
 double hanging_elongation(double length, double density, double gravity, double tensile) {
-  // Midpoint rule, far finer than it has to be.
+  // The midpoint rule, far finer than it has to be.
   constexpr int kCells = 20000;
   double sum = 0;
   for (int i = 0; i < kCells; ++i) {
@@ -95,24 +100,26 @@ Catenary catenary(double ratio) {
 }
 
 double bessel_zero(int n) {
-  // Zeros lie one each between (n − 1/2)π and nπ; the sign of J₀ there alternates.
+  // One zero each lies between (n − 1/2)π and nπ; the sign of J₀ there alternates.
   const double sign = n % 2 == 1 ? -1 : 1;
   return root([&](double x) { return sign * std::cyl_bessel_j(0.0, x); },
               (n - 0.5) * std::numbers::pi, n * std::numbers::pi);
 }
 
 HeavyElastica heavy_elastica(double gamma) {
-  // From the tip, σ = 1 − s, in the angle φ = π/2 − θ from the plumb line, which is tiny there for
-  // a limp strip: φ_σσ = Γ σ sin φ, φ_σ(0) = 0. Bisection on φ(0) until φ(1) = π/2; held at π/2 the
-  // right side makes φ(1) increase with φ(0).
+  // The equation is integrated from the tip, σ = 1 − s, in the angle φ = π/2 − θ from the plumb
+  // line, which is tiny there for a limp strip: φ_σσ = Γ σ sin φ, φ_σ(0) = 0. Bisection on φ(0)
+  // finds φ(1) = π/2. Holding the angle at π/2 in the right side makes φ(1) increase with φ(0).
   using State = std::array<double, 4>;  // φ, φ_σ, reach, drop
   const auto slope = [&](double sigma, const State& y) -> State {
     const double load = gamma * sigma * std::sin(std::min(y[0], std::numbers::pi / 2));
     return {y[1], load, std::sin(y[0]), std::cos(y[0])};
   };
+
   const auto shoot = [&](double log_tip) {
     return integrate<4>({std::exp(log_tip), 0, 0, 0}, 4000, slope);
   };
+
   const double log_tip = root([&](double t) { return shoot(t)[0] - std::numbers::pi / 2; }, -200,
                               std::log(std::numbers::pi / 2));
   const State end = shoot(log_tip);
@@ -122,13 +129,15 @@ HeavyElastica heavy_elastica(double gamma) {
 double PressedElastica::friction() const { return std::fabs(sideways) / pressure; }
 
 PressedElastica pressed_elastica(double shortening) {
-  // Newton with differences, from the buckled shape of a small shortening on; the branch turns
-  // smoothly. A clamped and hinged strip buckles at P = 4.4934².
+  // Newton's method with differences starts from the buckled shape of a small shortening; the
+  // branch turns smoothly. A clamped and hinged strip buckles at P = 4.4934².
   using Vector = std::array<double, 3>;
   const auto residual = [](const Vector& u, double wanted) -> Vector {
     const auto end = pressed_end({u[0], u[1], u[2]}, 1);
     return {end[1], end[2], end[3] - (1 - wanted)};
   };
+
+  // The shortening grows in stages, with the solution of one as the start of the next.
   constexpr int kStages = 15;
   const double first = std::min(1e-4, shortening);
   Vector u{8 * std::sqrt(first), 20.19, -9 * std::sqrt(first)};
@@ -146,7 +155,7 @@ std::array<double, 2> pressed_point(const PressedElastica& elastica, double s) {
 }
 
 double belt_leg(double friction, double leg, double radius) {
-  // In units of ρ g: T(0) = leg, T(π) = heavy leg.
+  // All forces are in units of ρ g: T(0) is the length of one leg, T(π) that of the heavy one.
   constexpr double kPi = std::numbers::pi;
   const auto slope = [&](double s, const std::array<double, 1>& t) -> std::array<double, 1> {
     const double phi = kPi * s;

@@ -1,4 +1,4 @@
-// What the measured figures are held against: solutions of the continuous problems, computed here.
+// The references of the measured quantities: solutions of the continuous problems, computed here.
 #pragma once
 
 #include <array>
@@ -6,11 +6,12 @@
 
 namespace icloth::validation {
 
-/// Elongation [m] of a strip that hangs by its end under its own weight. Second
-/// Piola stress k G, so the local stretch λ at weight w = ρ g (L − s) solves λ(λ² − 1)k/2 = w.
+/// The elongation [m] of a strip that hangs by its end under its own weight. The second Piola
+/// stress is k G, so the local stretch λ at weight w = ρ g (L − s) solves λ(λ² − 1)k/2 = w.
 double hanging_elongation(double length, double density, double gravity, double tensile);
 
-/// Inextensible chain between level points, length/span = ratio > 1. In spans.
+/// An inextensible chain between level points, with length/span = ratio > 1. All lengths are in
+/// spans.
 struct Catenary {
   double sag;        ///< a (cosh z − 1), with sinh z / z = ratio and a = 1/(2z)
   double parameter;  ///< a: horizontal tension / weight per length
@@ -21,8 +22,8 @@ Catenary catenary(double ratio);
 /// Zero number n = 1, 2, … of the Bessel function J₀.
 double bessel_zero(int n);
 
-/// Clamped horizontal, heavy, inextensible: θ'' = −Γ (1 − s) cos θ, θ(0) = 0, θ'(1) = 0, with
-/// Γ = ρ g L³/D. In lengths; drop H and reach W of the tip.
+/// A clamped, horizontal, heavy, inextensible strip: θ'' = −Γ (1 − s) cos θ, θ(0) = 0, θ'(1) = 0,
+/// with Γ = ρ g L³/D. Drop H and reach W of the tip are in lengths.
 struct HeavyElastica {
   double drop, reach, tip_angle;
 };
@@ -38,15 +39,16 @@ struct PressedElastica {
   double friction() const;  ///< |Q|/P, the coefficient that is needed
 };
 PressedElastica pressed_elastica(double shortening);
-/// Its point at arc length s, in lengths from the clamp: across and along the clamp's direction.
+/// The point of the strip at arc length s, in lengths from the clamp: across and along the clamp's
+/// direction.
 std::array<double, 2> pressed_point(const PressedElastica& elastica, double s);
 
-/// A belt with weight, of line density ρ, over a half cylinder; at the verge of sliding towards its
-/// heavy leg, with N = T/r + ρ g sin φ: dT/dφ = μT + ρ g r (cos φ + μ sin φ) from one leg to the
-/// other. Length of the heavy leg that just holds, for the other leg's and the radius r of the belt
-/// [m].
+/// A belt with weight, of line density ρ, over a half cylinder, at the verge of sliding towards its
+/// heavy leg. With N = T/r + ρ g sin φ it satisfies dT/dφ = μT + ρ g r (cos φ + μ sin φ) from one
+/// leg to the other. Returns the length of the heavy leg that just holds, for the other leg's
+/// length and the radius r of the belt [m].
 double belt_leg(double friction, double leg, double radius);
-/// Friction that just holds the two legs.
+/// The friction that just holds the two legs.
 double belt_friction(double light_leg, double heavy_leg, double radius);
 
 }  // namespace icloth::validation

@@ -6,6 +6,7 @@
 namespace icloth::validation {
 namespace {
 
+/// Twice the signed area of a triangle: the side of the line a b on which p lies.
 double side(Vec2d a, Vec2d b, Vec2d p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
@@ -28,6 +29,7 @@ void Shadow::add(const std::vector<Vec3d>& positions, const std::vector<Triangle
 }
 
 void Shadow::add(Vec2d a, Vec2d b, Vec2d c) {
+  // Only the squares about the triangle have to be tested.
   const auto cell_of = [&](double value, double low, int count) {
     return static_cast<int>(std::clamp((value - low) / cell_, 0.0, count - 1.0));
   };
@@ -35,6 +37,8 @@ void Shadow::add(Vec2d a, Vec2d b, Vec2d c) {
   const int last_i = cell_of(std::max({a.x, b.x, c.x}), low_.x, columns_);
   const int first_j = cell_of(std::min({a.y, b.y, c.y}), low_.y, rows_);
   const int last_j = cell_of(std::max({a.y, b.y, c.y}), low_.y, rows_);
+
+  // A square is covered when its middle is inside, for either orientation.
   for (int j = first_j; j <= last_j; ++j)
     for (int i = first_i; i <= last_i; ++i) {
       const Vec2d p = middle(i, j);

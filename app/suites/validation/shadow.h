@@ -1,4 +1,4 @@
-// Area of what triangles cover when seen from above.
+// The area that triangles cover when seen from above.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace icloth::validation {
 
-/// Squares that are covered when their middle is.
+/// A ground of squares, each of which counts as covered when its middle is.
 class Shadow {
  public:
-  /// The ground from low to high in x and z [m], in squares of `cell`; what lies outside is not
-  /// seen.
+  /// The ground reaches from low to high in x and z [m], in squares of `cell`; anything outside is
+  /// not seen.
   Shadow(Vec2d low, Vec2d high, double cell);
 
   void add(const std::vector<Vec3d>& positions, const std::vector<Triangle>& faces);

@@ -8,7 +8,7 @@ namespace {
 
 Index vertices_before(Index row, Index columns) { return row * (columns + 1) + row / 2; }
 
-/// Places across of the vertices of a row, in edges from the left border.
+/// The places of the vertices of a row across the strip, in edges from the left border.
 std::vector<double> places(Index row, Index columns) {
   std::vector<double> list;
   if (row % 2 == 0) {
@@ -43,11 +43,12 @@ Material plain_fabric(double tensile, double poisson, double density, double mod
   material.name = "plain";
   material.law = Material::Law::orthotropic;
   material.density = density;
-  // The stiffness on Green strain is twice the table. Plane stress: k11 = E/(1 − ν²), k12 = ν k11,
-  // and k33 = E/(1 + ν), since S_uv = k33 G_uv.
+  // The stiffness on Green strain is twice the table. In plane stress k11 = E/(1 − ν²), k12 = ν
+  // k11, and k33 = E/(1 + ν), since S_uv = k33 G_uv.
   const double k = tensile / (1 - poisson * poisson);
   for (auto& row : material.stretching)
     row = {k / 2, poisson * k / 2, k / 2, (1 - poisson) * k / 2};
+
   // A hinge coefficient k_e makes D = k_e/4 on equilateral triangles.
   for (auto& row : material.bending) row.fill(4 * modulus);
   return material;
@@ -70,6 +71,8 @@ Cloth strip_cloth(const Strip& strip, const std::function<Vec3d(double, double)>
   Cloth cloth;
   cloth.name = "strip";
   cloth.material = material;
+
+  // The vertices are placed row by row, and `place` gives the start shape.
   std::vector<Vec2d> flat;
   for (Index r = 0; r <= strip.rows; ++r)
     for (const double at : places(r, strip.columns))
@@ -78,17 +81,21 @@ Cloth strip_cloth(const Strip& strip, const std::function<Vec3d(double, double)>
     cloth.mesh.positions.push_back(place(p.x, p.y));
     cloth.rest.push_back({p.x, p.y, 0});
   }
+
+  // The material coordinates are the flat ones.
   const auto add = [&](Index a, Index b, Index c) {
     const auto uv = [&](Index v) { return flat[static_cast<std::size_t>(v)]; };
     cloth.mesh.faces.push_back({a, b, c});
     cloth.mesh.uv.push_back({uv(a), uv(b), uv(c)});
   };
+
   for (Index r = 0; r < strip.rows; ++r) {
     const Index low = vertices_before(r, strip.columns);
     const Index high = vertices_before(r + 1, strip.columns);
     const bool shifted = r % 2 == 1;  // the lower row
     const Index few = shifted ? high : low, many = shifted ? low : high;
-    // Triangles that stand on the row of n + 1 vertices, and those on the row of n + 2.
+
+    // Triangles stand on the row of n + 1 vertices, and others on the row of n + 2.
     for (Index i = 0; i < strip.columns; ++i) {
       if (shifted)
         add(few + i + 1, few + i, many + i + 1);
@@ -117,6 +124,7 @@ Vec3d row_mean(const Strip& strip, const std::vector<Vec3d>& positions, Index ro
 }
 
 std::vector<double> lumped_mass(const Cloth& cloth) {
+  // A third of each face's mass goes to each of its corners.
   std::vector<double> mass(cloth.mesh.positions.size());
   for (const Triangle& t : cloth.mesh.faces) {
     const auto at = [&](std::size_t k) { return cloth.rest[static_cast<std::size_t>(t[k])]; };

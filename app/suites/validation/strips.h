@@ -1,4 +1,4 @@
-// Parts of the small scenes that the validation cases are made of. SI units, Y up.
+// Parts of the small scenes that the validation cases are made of, in SI units with Y up.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,15 @@
 
 namespace icloth::validation {
 
-/// Scene without air and contacts, solved to ten digits, in which no step is halved.
+/// A scene without air and contacts, solved to ten digits, in which no step is halved.
 std::shared_ptr<Scene> exact_scene(const char* name);
 
-/// Fabric with constant coefficients: plane stress with Young's modulus `tensile` [N/m] and
+/// A fabric with constant coefficients: plane stress with Young's modulus `tensile` [N/m] and
 /// Poisson's ratio; `modulus` is D, the bending moment per width and curvature [N·m].
 Material plain_fabric(double tensile, double poisson, double density, double modulus);
 
-/// Strip of equilateral triangles in rows across its length, borders straight: odd rows are shifted
-/// by half an edge and have one vertex more. Cloth bends along the rows without any strain.
+/// A strip of equilateral triangles in rows across its length, with straight borders: odd rows are
+/// shifted by half an edge and have one vertex more. Cloth bends along the rows without any strain.
 struct Strip {
   double length = 1;  ///< along v [m]
   Index rows = 40;    ///< of triangles, along the length
@@ -25,21 +25,21 @@ struct Strip {
   double row_height() const { return length / rows; }
   double edge() const;   ///< [m]
   double width() const;  ///< [m]
-  /// Vertices of row r = 0 … rows.
+  /// The vertices of row r = 0 … rows.
   std::vector<Index> row(Index r) const;
   Index vertices() const;
 };
 
-/// The strip with its vertices at place(u, v), u across from −width/2, v along from 0; its rest
-/// shape is flat. Rows are pinned by `pin_rows`.
+/// The strip with its vertices at place(u, v), u across from −width/2 and v along from 0; its rest
+/// shape is flat. Rows are pinned by `pin_row`.
 Cloth strip_cloth(const Strip& strip, const std::function<Vec3d(double, double)>& place,
                   const Material& material);
 void pin_row(Cloth& cloth, const Strip& strip, Index row);
 
-/// Mean position of a row.
+/// The mean position of a row.
 Vec3d row_mean(const Strip& strip, const std::vector<Vec3d>& positions, Index row);
 
-/// Lumped masses of a cloth [kg] (V).
+/// The lumped masses of a cloth [kg] (V).
 std::vector<double> lumped_mass(const Cloth& cloth);
 
 }  // namespace icloth::validation
