@@ -33,8 +33,8 @@ struct UiState {
   int history_back = 0;           ///< while the history slider is held
   bool slider_held = false;       ///< the active slider has moved before in this gesture
 
-  bool show_failure = false;  ///< asked for: look at the offending faces
-  bool save_session = false;  ///< asked for: write the recording
+  bool show_failure = false;   ///< asked for: look at the offending faces
+  bool save_session = false;   ///< asked for: write the recording
   std::vector<Rect> overlays;  ///< floating panels of this frame: clicks there are theirs
 };
 
