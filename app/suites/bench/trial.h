@@ -34,7 +34,7 @@ struct Trial {
   std::vector<double> mass;  ///< of the cloths' vertices [kg]
   double seconds = 0;        ///< of wall time a simulated second
   double shadow = 0;         ///< area that the cloths cover from above, mean of the samples [m²]
-  double pressed = 0;        ///< deepest way into the thickness: 1 − smallest gap / h
+  double pressed = 0;        ///< deepest intrusion into the thickness: 1 − smallest gap / h
   double violation = 0;      ///< largest of the impact zones, of their offset δ
   double cg_iterations = 0;  ///< of a step
   double solves = 0;         ///< likewise, of linear systems

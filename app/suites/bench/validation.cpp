@@ -13,11 +13,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using validation::Case;
 using validation::CaseResult;
-using validation::Figure;
+using validation::Comparison;
 
 /// Prints the comparisons of a case, and the requirements that it missed below them.
 void print_case(const Case& test, Build build, const CaseResult& r) {
-  for (const Figure& f : r.figures)
+  for (const Comparison& f : r.comparisons)
     std::printf("%-19s %-6s %-50s %12.6g %12.6g %9.1e %8.1e  %s\n", test.name,
                 std::string(build_name(build)).c_str(), f.what.c_str(), f.reference, f.measured,
                 f.error, f.target, f.passed() ? "ok" : "FAIL");
@@ -36,7 +36,7 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   json["passed"] = r.passed();
   json["failures"] = r.failures;
   json["figures"] = Json::array();
-  for (const Figure& f : r.figures)
+  for (const Comparison& f : r.comparisons)
     json["figures"].push_back({{"what", f.what},
                                {"reference", f.reference},
                                {"measured", f.measured},
@@ -51,7 +51,7 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
 std::string csv_rows(const Case& test, Build build, const CaseResult& r) {
   std::string rows;
   char numbers[160];
-  for (const Figure& f : r.figures) {
+  for (const Comparison& f : r.comparisons) {
     std::snprintf(numbers, sizeof numbers, ",%.9g,%.9g,%.3e,%.3e,%s\n", f.reference, f.measured,
                   f.error, f.target, f.passed() ? "ok" : "FAIL");
     rows += std::string(test.name) + "," + std::string(build_name(build)) + ",\"" + f.what + "\"" +

@@ -6,7 +6,7 @@
 namespace icloth {
 
 /// Runs the cases, prints a table, writes results.json and figures.csv where options.out names a
-/// folder. Returns 0, or 1 when a figure misses its target.
+/// folder. Returns 0, or 1 when a comparison misses its target.
 int run_validation(const BenchOptions& options);
 
 }  // namespace icloth

@@ -72,7 +72,7 @@ class CaseRun {
                            const std::vector<std::string>& words);
   void note(const std::string& text);
 
-  const CaseResult& figures() const { return result_; }
+  const CaseResult& result() const { return result_; }
   std::vector<Vec3d> positions() const { return simulator_->snapshot().positions; }
 
   /// Checks the requirements that all cases share and returns the result.

@@ -111,7 +111,7 @@ void stiff(CaseRun& run) {
 
   run.start(scene);
   run.run_for(run.brief() ? 0.3 : 1.0);
-  run.require(run.figures().max_strain < (kExponent == 3 ? 0.1 : 0.05),
+  run.require(run.result().max_strain < (kExponent == 3 ? 0.1 : 0.05),
               "strain below " + std::string(kExponent == 3 ? "10 %" : "5 %"));
 }
 
@@ -154,9 +154,9 @@ void jerked_grab(CaseRun& run) {
   Vec3d goal = grab.target, target = goal;
   for (int k = 0; k < (run.brief() ? 30 : 200); ++k) {
     if (k % 4 == 0) goal = dice.point({-0.8, -0.14, -0.8}, {0.8, 0.8, 0.8});
-    const Vec3d way = goal - target;
+    const Vec3d left = goal - target;
     const double reach = 50 * scene->parameters.step.time_step;
-    target = norm(way) > reach ? target + (reach / norm(way)) * way : goal;
+    target = norm(left) > reach ? target + (reach / norm(left)) * left : goal;
     run.step(std::vector{event(InputEvent::Kind::move, 1, target)});
   }
 }

@@ -118,7 +118,7 @@ void seam(CaseRun& run) {
   scene->cloths = {tube};
   run.start(scene);
   run.run_for(run.brief() ? 0.2 : 1.0);
-  run.require(run.figures().max_strain < 0.3, "the tube does not stretch at its seam");
+  run.require(run.result().max_strain < 0.3, "the tube does not stretch at its seam");
 }
 
 }  // namespace icloth::stability

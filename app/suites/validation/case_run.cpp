@@ -60,14 +60,14 @@ void CaseRun::relax(double dt_first, double dt_last, double tolerance, int limit
   require(false, "at rest after " + std::to_string(limit) + " steps");
 }
 
-void CaseRun::add(Figure figure) {
-  if (!figure.passed()) {
+void CaseRun::add(Comparison comparison) {
+  if (!comparison.passed()) {
     char text[160];
     std::snprintf(text, sizeof text, ": %.6g against %.6g, error %.2e, target %.2e",
-                  figure.measured, figure.reference, figure.error, figure.target);
-    result_.failures.push_back(figure.what + text);
+                  comparison.measured, comparison.reference, comparison.error, comparison.target);
+    result_.failures.push_back(comparison.what + text);
   }
-  result_.figures.push_back(std::move(figure));
+  result_.comparisons.push_back(std::move(comparison));
 }
 
 void CaseRun::compare(const std::string& what, double reference, double measured, double target) {

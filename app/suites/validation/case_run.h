@@ -19,7 +19,7 @@ struct Settings {
 };
 
 /// One line of the table.
-struct Figure {
+struct Comparison {
   std::string what;
   double reference = 0, measured = 0;
   double error = 0;   ///< as compared with target, relative unless `absolute`
@@ -31,7 +31,7 @@ struct Figure {
 
 /// The comparisons of a case and its failures.
 struct CaseResult {
-  std::vector<Figure> figures;
+  std::vector<Comparison> comparisons;
   std::vector<std::string> failures;  ///< requirements that do not hold, comparisons included
   std::int64_t steps = 0;
   double seconds = 0;  ///< of wall time
@@ -78,7 +78,7 @@ class CaseRun {
   CaseResult finish() { return result_; }
 
  private:
-  void add(Figure figure);
+  void add(Comparison comparison);
 
   Settings settings_;
   std::unique_ptr<Simulator> simulator_;

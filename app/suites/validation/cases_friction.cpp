@@ -113,7 +113,7 @@ double slide(CaseRun& run, const Patch& patch, double tangent, double time) {
 
 /// The displacement of a body under Coulomb friction, as backward Euler with steps dt sums it up
 /// (dt = 0: the continuous one).
-double coulomb_way(double tangent, double friction, double time, double dt) {
+double coulomb_distance(double tangent, double friction, double time, double dt) {
   const double angle = std::atan(tangent);
   const double a = kGravity * (std::sin(angle) - friction * std::cos(angle));
   return 0.5 * a * time * (time + dt);
@@ -137,7 +137,7 @@ void threshold(CaseRun& run, Ground ground) {
 
     // Just above it, it must slide as fast as the difference of the forces says.
     run.compare("way in 1 s at 1.01 mu [m]" + mu,
-                coulomb_way(1.01 * friction, friction, 1, patch.dt),
+                coulomb_distance(1.01 * friction, friction, 1, patch.dt),
                 slide(run, patch, 1.01 * friction, 1), 0.25);
   }
 }
@@ -153,7 +153,8 @@ void sliding(CaseRun& run, Ground ground) {
     patch.friction = friction;
     const double time = 0.7;
     run.compare("way at 20 degrees [m], mu = " + number(friction),
-                coulomb_way(tangent, friction, time, 0), slide(run, patch, tangent, time), 0.01);
+                coulomb_distance(tangent, friction, time, 0), slide(run, patch, tangent, time),
+                0.01);
   }
 
   // Against the formula of backward Euler, for several time steps.
@@ -163,7 +164,8 @@ void sliding(CaseRun& run, Ground ground) {
     if (run.brief() && rate == 400) continue;
     patch.dt = 1.0 / rate;
     run.compare("the same of backward Euler, dt = 1/" + std::to_string(rate),
-                coulomb_way(tangent, 0.3, 0.6, patch.dt), slide(run, patch, tangent, 0.6), 0.01);
+                coulomb_distance(tangent, 0.3, 0.6, patch.dt), slide(run, patch, tangent, 0.6),
+                0.01);
   }
 
   // The same for several meshes of the patch and of the ground.
@@ -173,7 +175,8 @@ void sliding(CaseRun& run, Ground ground) {
     patch.rows = rows;
     patch.ground_edge = rows == 2 ? 0.3 : 0.02;
     run.compare("the same with " + std::to_string(rows) + " rows of triangles",
-                coulomb_way(tangent, 0.3, 0.6, patch.dt), slide(run, patch, tangent, 0.6), 0.01);
+                coulomb_distance(tangent, 0.3, 0.6, patch.dt), slide(run, patch, tangent, 0.6),
+                0.01);
   }
 }
 
@@ -190,12 +193,12 @@ void stopping(CaseRun& run, Ground ground) {
     run.simulator().restore(state);
 
     // Backward Euler applies the friction of a step to the velocity before the displacement.
-    double way = 0;
+    double distance = 0;
     for (double v = speed - 0.3 * kGravity * patch.dt; v > 0; v -= 0.3 * kGravity * patch.dt)
-      way += v * patch.dt;
+      distance += v * patch.dt;
     run.steps(static_cast<int>(1.2 * speed / (0.3 * kGravity * patch.dt)));
-    run.compare("stopping way from " + number(speed) + " m/s [m]", way, motion(run).place - start,
-                0.01);
+    run.compare("stopping way from " + number(speed) + " m/s [m]", distance,
+                motion(run).place - start, 0.01);
     run.bound("speed then [m/s]", motion(run).speed, 1e-4);
   }
 }

@@ -26,8 +26,8 @@ double measured_frequency(CaseRun& run, const Cloth& cloth,
   // The strip starts at rest with a small displacement of that shape.
   std::vector<Vec3d> x = run.positions();
   const std::vector<double> mass = lumped_mass(cloth);
-  const double way = 1e-5 * norm(x.back() - x.front());
-  for (std::size_t i = 0; i < mass.size(); ++i) x[i].z += way * shape(i);
+  const double displacement = 1e-5 * norm(x.back() - x.front());
+  for (std::size_t i = 0; i < mass.size(); ++i) x[i].z += displacement * shape(i);
   run.set_state(x, {});
 
   // Position and velocity of the mode are the parts of a complex number.

@@ -58,8 +58,8 @@ void follow(CaseRun& run, const Tip& tip, const char* what, Vec3d direction, dou
   // The vertex starts at rest, displaced in the direction of the motion.
   std::vector<Vec3d> x = run.positions();
   const Vec3d rest = x[0];
-  const double way = 1e-7 * tip.height;
-  x[0] += way * direction;
+  const double displacement = 1e-7 * tip.height;
+  x[0] += displacement * direction;
   run.set_state(x, {});
 
   const int count = 40;
@@ -67,8 +67,8 @@ void follow(CaseRun& run, const Tip& tip, const char* what, Vec3d direction, dou
 
   // Displacement and velocity are the parts of z.
   const Snapshot state = run.simulator().snapshot();
-  const Complex z(dot(state.positions[0] - rest, direction) / way,
-                  dot(state.velocities[0], direction) / (omega * way));
+  const Complex z(dot(state.positions[0] - rest, direction) / displacement,
+                  dot(state.velocities[0], direction) / (omega * displacement));
 
   // The product of all steps has a known size and argument.
   const double dt = scene->parameters.step.time_step, turned = count * std::atan(omega * dt);
@@ -151,13 +151,13 @@ void free_fall(CaseRun& run) {
 
   // Every vertex must have the displacement and the velocity of the formula.
   const double dt = scene->parameters.step.time_step, t = count * dt;
-  const Vec3d way = t * thrown + (0.5 * t * (t + dt)) * g, speed = thrown + t * g;
-  double way_error = 0, speed_error = 0;
+  const Vec3d displacement = t * thrown + (0.5 * t * (t + dt)) * g, speed = thrown + t * g;
+  double position_error = 0, speed_error = 0;
   for (std::size_t i = 0; i < start.size(); ++i) {
-    way_error = std::max(way_error, norm(state.positions[i] - start[i] - way));
+    position_error = std::max(position_error, norm(state.positions[i] - start[i] - displacement));
     speed_error = std::max(speed_error, norm(state.velocities[i] - speed));
   }
-  run.bound("position, of the way", way_error / norm(way), 1e-5);
+  run.bound("position, of the way", position_error / norm(displacement), 1e-5);
   run.bound("velocity, of the speed", speed_error / norm(speed), 1e-5);
 }
 

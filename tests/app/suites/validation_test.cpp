@@ -34,7 +34,7 @@ TEST_P(Validation, IsWithinItsTargets) {
   settings.brief = true;
   ASSERT_TRUE(runs_on(*GetParam(), settings.build));
   const CaseResult result = run_case(*GetParam(), settings);
-  EXPECT_FALSE(result.figures.empty());
+  EXPECT_FALSE(result.comparisons.empty());
   for (const std::string& failure : result.failures) ADD_FAILURE() << failure;
 }
 
@@ -47,7 +47,7 @@ void miss(CaseRun& run) {
 /// The suite must be able to fail.
 TEST(ValidationSuite, NamesWhatMisses) {
   const CaseResult result = run_case({"miss", "", false, miss}, {});
-  ASSERT_EQ(result.figures.size(), 3u);
+  ASSERT_EQ(result.comparisons.size(), 3u);
   ASSERT_EQ(result.failures.size(), 2u);
   EXPECT_NE(result.failures[0].find("missed"), std::string::npos);
   EXPECT_NE(result.failures[1].find("no number"), std::string::npos);
