@@ -41,7 +41,8 @@ struct Symmetric {
   }
 };
 
-/// What a contact adds to the system A Δv = b: H [kg] on the left, impulse [N·s] on the right.
+/// The contribution of a contact to the system A Δv = b: H [kg] on the left, impulse [N·s] on the
+/// right.
 struct ContactTerm {
   Symmetric h;
   Vec3r impulse;  ///< Σ over corners with their weights

@@ -9,7 +9,7 @@ namespace icloth::ICLOTH_BUILD {
 /// The columns of the deformation gradient and the derivative weights of one face.
 struct FaceFrame {
   Vec3r fu, fv;       ///< ∂x/∂u, ∂x/∂v
-  Real bu[3], bv[3];  ///< ∂F_u/∂x_a = bu[a]·I, likewise v
+  Real bu[3], bv[3];  ///< ∂F_u/∂x_a = bu[a]·I, ∂F_v/∂x_a = bv[a]·I
 };
 
 /// The frame of a face from its corners. `inverse` holds the rows r₀, r₁ of Dm⁻¹ [1/m].

@@ -15,7 +15,7 @@
 
 namespace icloth {
 
-/// How the fabric is shown.
+/// The appearance of the fabric.
 enum class ViewMode {
   shaded,     ///< fabric as the eye sees it
   wireframe,  ///< shaded, with the edges of the mesh

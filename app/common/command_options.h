@@ -12,6 +12,7 @@ namespace icloth {
 
 inline constexpr double kLongestTime = 1e5;  ///< of --time [s]
 
+/// Checks the form of a device. An empty text means that it is right.
 inline std::string check_device(const std::string& text) {
   const bool numbered = text.starts_with("cuda:") && text.size() > 5 && text.size() < 9 &&
                         text.find_first_not_of("0123456789", 5) == std::string::npos;
@@ -19,7 +20,7 @@ inline std::string check_device(const std::string& text) {
   return "'" + text + "', expected cpu, cuda or cuda:N";
 }
 
-/// CLI::Range lets NaN through.
+/// Checks seconds by itself, since CLI::Range lets NaN through.
 inline std::string check_time(const std::string& text) {
   char* end = nullptr;
   const double time = std::strtod(text.c_str(), &end);
@@ -27,15 +28,16 @@ inline std::string check_time(const std::string& text) {
   return "'" + text + "', expected seconds from 0 to 100000";
 }
 
-/// Adds --device to a verb; its form is checked while the command line is read.
+/// Adds --device to a command; its form is checked while the command line is read.
 inline void add_device_option(CLI::App& verb, std::string& device) {
   verb.add_option("--device", device, "cpu, cuda or cuda:N (default: cuda where usable)")
       ->check(check_device);
 }
 
-/// Adds the options to a verb; values are checked while the command line is read.
+/// Adds the options to a command; values are checked while the command line is read.
 inline void add_simulation_options(CLI::App& verb, SimulationOptions& options,
                                    bool scene_required) {
+  // The scene and the device.
   auto* scene =
       verb.add_option("SCENE", options.scene,
                       "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
@@ -46,17 +48,22 @@ inline void add_simulation_options(CLI::App& verb, SimulationOptions& options,
       ->check(CLI::IsMember({"f32", "f64"}));
   verb.add_option("--threads", options.threads, "threads of the CPU solver (default: all)")
       ->check(CLI::Range(1, 4096));
+
+  // The length of the run, either in steps or in seconds.
   auto* steps = verb.add_option("--steps", options.steps, "number of steps")
                     ->check(CLI::Range(0L, 100'000'000L));
   verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
       ->check(check_time)
       ->excludes(steps);
+
+  // Changes of the scene and its parameters.
   verb.add_flag("--repair-start", options.repair_start,
                 "separate faces that intersect a little at the start");
   verb.add_option("--preset", options.preset,
                   "fast, normal or accurate: settings measured by bench accuracy");
   verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
       ->allow_extra_args(false);
+
   verb.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");
   verb.add_flag("--quiet", options.quiet, "print errors only");
 }

@@ -67,7 +67,7 @@ bool report_start_intersections(const Scene& scene, bool single_precision) {
         scene.repair->pairs_before, scene.repair->pairs_left, scene.repair->moved,
         1e3 * scene.repair->largest_move);
 
-  // What is left is listed by name, up to a limit.
+  // The remaining pairs are listed by name, up to a limit.
   const auto pairs = find_start_intersections(scene, single_precision);
   if (pairs.empty()) return false;
   const ElementNames names(scene);

@@ -22,7 +22,7 @@ struct SimulationOptions {
   bool quiet = false;
 };
 
-/// What the options change of the scene, for load_scene: the preset first, then each --set.
+/// The changes of the scene by the options, for load_scene: the preset first, then each --set.
 std::vector<std::string> scene_overrides(const SimulationOptions& options);
 
 /// The build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA

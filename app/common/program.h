@@ -1,4 +1,4 @@
-// What every program of the project does around its work.
+// The frame that every program of the project puts around its work.
 #pragma once
 
 #include <functional>

@@ -141,7 +141,7 @@ ICLOTH_HD bool overlap(const Box& a, const Box& b) {
 struct CellView {
   View<const Index> element;
   Index first, last;
-  /// How many entries have an element number below the limit.
+  /// The number of entries whose element number is below the limit.
   ICLOTH_HD Index below(Index limit) const {
     return partition_point(last - first, [&](Index k) { return element[first + k] < limit; });
   }

@@ -37,8 +37,8 @@ struct Trial {
   double pressed = 0;        ///< deepest intrusion into the thickness: 1 − smallest gap / h
   double violation = 0;      ///< largest of the impact zones, of their offset δ
   double cg_iterations = 0;  ///< of a step
-  double solves = 0;         ///< likewise, of linear systems
-  double tests = 0;          ///< likewise, elementary ones
+  double solves = 0;         ///< linear systems of a step
+  double tests = 0;          ///< elementary tests of a step
   double strain = 0;         ///< largest principal stretch − 1 of any step
   std::size_t penetrations = 0;
   bool finished = false;  ///< no step was refused
