@@ -26,8 +26,8 @@
 namespace icloth {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"view", "run",    "render", "bench", "replay",
-                                       "ccd",  "detect", "check",  "info"};
+constexpr std::string_view kCommands[] = {"view", "run",    "render", "bench", "replay",
+                                          "ccd",  "detect", "check",  "info"};
 
 int print_keys() {
   std::fputs(bindings_markdown().c_str(), stdout);
@@ -50,8 +50,8 @@ struct Commands {
   bool list_keys = false;
 
   Commands();
-  CLI::App* add_verb(const char* name, const char* what, std::function<int()> action,
-                     const SimulationOptions* options = nullptr);
+  CLI::App* add_command(const char* name, const char* what, std::function<int()> action,
+                        const SimulationOptions* options = nullptr);
   void add_view();
   void add_run();
   void add_render();
@@ -62,14 +62,14 @@ struct Commands {
 
 /// Adds a command whose action is run when the whole line has been read. `options` are those that
 /// add_simulation_options fills, where the command has them.
-CLI::App* Commands::add_verb(const char* name, const char* what, std::function<int()> action,
-                             const SimulationOptions* options) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->callback([this, action = std::move(action), options] {
+CLI::App* Commands::add_command(const char* name, const char* what, std::function<int()> action,
+                                const SimulationOptions* options) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->callback([this, action = std::move(action), options] {
     chosen = action;
     simulation = options;
   });
-  return verb;
+  return command;
 }
 
 void Commands::add_view() {
@@ -83,37 +83,39 @@ void Commands::add_view() {
     return 3;
 #endif
   };
-  CLI::App* verb = add_verb("view", "the window", action, &view.simulation);
-  add_simulation_options(*verb, view.simulation, false);
+  CLI::App* command = add_command("view", "the window", action, &view.simulation);
+  add_simulation_options(*command, view.simulation, false);
 
-  verb->add_option("--record", view.record_file, "save the session as a recording at the end");
-  verb->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
-  verb->add_option("--vertices", view.vertices,
+  command->add_option("--record", view.record_file, "save the session as a recording at the end");
+  command->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
+  command
+      ->add_option("--vertices", view.vertices,
                    "how they reach OpenGL: auto (on the GPU where that works) or host")
       ->check(CLI::IsMember({"auto", "host"}))
       ->capture_default_str();
-  verb->add_flag("!--paused", view.play, "start paused");
-  verb->add_flag("--script", view.play_script, "apply the scene's scripted grabs as well");
+  command->add_flag("!--paused", view.play, "start paused");
+  command->add_flag("--script", view.play_script, "apply the scene's scripted grabs as well");
 }
 
 void Commands::add_run() {
-  CLI::App* verb = add_verb(
+  CLI::App* command = add_command(
       "run", "headless simulation", [this] { return run_run(run); }, &run.simulation);
 
   // The length of the run and its scene are common to all commands that simulate.
-  add_simulation_options(*verb, run.simulation, true);
+  add_simulation_options(*command, run.simulation, true);
 
   // The remaining options are outputs, inputs, and what to do after a refused step.
-  verb->add_option("--out", run.out, "folder of exported frames");
-  verb->add_option("--export", run.exports, "format of the frames: obj")
+  command->add_option("--out", run.out, "folder of exported frames");
+  command->add_option("--export", run.exports, "format of the frames: obj")
       ->check(CLI::IsMember({"obj"}))
       ->allow_extra_args(false);
-  verb->add_option("--every", run.every, "export each K-th step")->check(CLI::Range(1L, 1000000L));
-  verb->add_option("--stats", run.stats_file, "statistics of every step, FILE.csv or FILE.json");
-  verb->add_option("--input", run.input_file, "recording whose drags are applied");
-  verb->add_option("--record", run.record_file, "save the run as a recording");
-  verb->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
-  verb->add_option("--on-failure", run.on_failure, "stop or continue after a refused step")
+  command->add_option("--every", run.every, "export each K-th step")
+      ->check(CLI::Range(1L, 1000000L));
+  command->add_option("--stats", run.stats_file, "statistics of every step, FILE.csv or FILE.json");
+  command->add_option("--input", run.input_file, "recording whose drags are applied");
+  command->add_option("--record", run.record_file, "save the run as a recording");
+  command->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
+  command->add_option("--on-failure", run.on_failure, "stop or continue after a refused step")
       ->check(CLI::IsMember({"stop", "continue"}));
 }
 
@@ -126,67 +128,69 @@ void Commands::add_render() {
     return 3;
 #endif
   };
-  CLI::App* verb = add_verb("render", "headless pictures", action, &render.simulation);
-  add_simulation_options(*verb, render.simulation, true);
+  CLI::App* command = add_command("render", "headless pictures", action, &render.simulation);
+  add_simulation_options(*command, render.simulation, true);
 
   // The picture itself: where it goes, and what it shows how well.
-  verb->add_option("--out", render.out, "FILE.png")->capture_default_str();
-  verb->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
-  verb->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
-  verb->add_option("--view", render.view, "what is shown")->capture_default_str();
-  verb->add_option("--quality", render.quality, "draft, interactive or still")
+  command->add_option("--out", render.out, "FILE.png")->capture_default_str();
+  command->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
+  command->add_option("--view", render.view, "what is shown")->capture_default_str();
+  command->add_option("--quality", render.quality, "draft, interactive or still")
       ->capture_default_str();
 
-  verb->add_option("--vertices", render.vertices,
+  command
+      ->add_option("--vertices", render.vertices,
                    "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
       ->check(CLI::IsMember({"auto", "interop", "host"}))
       ->capture_default_str();
-  verb->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
+  command->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
 }
 
 void Commands::add_replay() {
-  CLI::App* verb = add_verb("replay", "run recorded input again and compare the final state",
-                            [this] { return run_replay(replay); });
-  verb->add_option("RECORDING", replay.recording, "file of --record or of a session")->required();
-  verb->add_option("--threads", replay.threads, "threads of the CPU solver")
+  CLI::App* command = add_command("replay", "run recorded input again and compare the final state",
+                                  [this] { return run_replay(replay); });
+  command->add_option("RECORDING", replay.recording, "file of --record or of a session")
+      ->required();
+  command->add_option("--threads", replay.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
-  add_device_option(*verb, replay.device);
-  verb->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
-  verb->add_flag("--quiet", replay.quiet, "print errors only");
+  add_device_option(*command, replay.device);
+  command->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
+  command->add_flag("--quiet", replay.quiet, "print errors only");
 }
 
-/// For the list of --help alone: run_words hands the verb to the program of the suites.
+/// For the list of --help alone: run_words passes the command on to the program of the suites.
 void Commands::add_bench() {
   app.add_subcommand("bench", "benchmark suites and reports (icloth bench --help)");
 }
 
 void Commands::add_tests() {
-  CLI::App* ccd = add_verb("ccd", "elementary CCD over a file of queries",
-                           [this] { return run_ccd(ccd_queries, ccd_predictions); });
+  CLI::App* ccd = add_command("ccd", "elementary CCD over a file of queries",
+                              [this] { return run_ccd(ccd_queries, ccd_predictions); });
   ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
   ccd->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
 
-  CLI::App* verb = add_verb("detect", "all collisions between two frames of a mesh",
-                            [this] { return run_detect(detect); });
-  verb->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
-  verb->add_option("T1", detect.end, "the same mesh at the end")->required();
-  verb->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");
-  verb->add_option("--threads", detect.threads, "threads")->check(CLI::Range(1, 4096));
+  CLI::App* command = add_command("detect", "all collisions between two frames of a mesh",
+                                  [this] { return run_detect(detect); });
+  command->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
+  command->add_option("T1", detect.end, "the same mesh at the end")->required();
+  command->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");
+  command->add_option("--threads", detect.threads, "threads")->check(CLI::Range(1, 4096));
 
-  verb = add_verb("check", "exact self- and inter-mesh intersection test",
-                  [this] { return run_check(check); });
-  verb->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
-  verb->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
+  command = add_command("check", "exact self- and inter-mesh intersection test",
+                        [this] { return run_check(check); });
+  command->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
+  command->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
 
-  CLI::App* info = add_verb("info", "version, machine, builds, renderer",
-                            [this] { return list_keys ? print_keys() : run_info(); });
+  CLI::App* info = add_command("info", "version, machine, builds, renderer",
+                               [this] { return list_keys ? print_keys() : run_info(); });
   info->add_flag("--keys", list_keys, "print docs/keys.md: the keys and what the mouse does");
 }
 
 Commands::Commands() {
   app.set_version_flag("--version", "icloth " + program_version());
   app.require_subcommand(1);
-  app.footer("Without a verb the scene is opened in a window: icloth [SCENE].");
+  app.footer("Without a command the scene is opened in a window: icloth [SCENE].");
   add_view();
   add_run();
   add_render();
@@ -196,7 +200,7 @@ Commands::Commands() {
 }
 
 /// Completes `icloth [view] [SCENE]`: puts the command in where it was left out.
-void complete_verb(std::vector<std::string>& words) {
+void complete_command(std::vector<std::string>& words) {
   if (words.empty()) {
     words = {"view"};
     return;
@@ -205,13 +209,13 @@ void complete_verb(std::vector<std::string>& words) {
 
   // A name that is no command is a scene. One that looks like neither is probably misspelt.
   if (first == "-h" || first == "--help" || first == "--version") return;
-  if (std::ranges::find(kVerbs, first) != std::end(kVerbs)) return;
+  if (std::ranges::find(kCommands, first) != std::end(kCommands)) return;
   const bool word = !first.starts_with("-") && first.find_first_of("./") == std::string::npos;
   const std::string scenes = asset_names("scenes") + " ";
   if (word && scenes.find(" " + first + " ") == std::string::npos &&
       !std::filesystem::exists(first))
-    throw InputError("'" + first + "' is neither a verb nor a scene, the nearest verb is '" +
-                     std::string(nearest_name(first, kVerbs)) + "' (see icloth --help)");
+    throw InputError("'" + first + "' is neither a command nor a scene, the nearest command is '" +
+                     std::string(nearest_name(first, kCommands)) + "' (see icloth --help)");
   words.insert(words.begin(), "view");
 }
 
@@ -229,7 +233,7 @@ int run_words(std::vector<std::string> words) {
     return run_bench_program({words.begin() + 1, words.end()});
 
   Commands commands;
-  complete_verb(words);
+  complete_command(words);
 
   // CLI11 wants the words in reverse order; --help and --version end here.
   std::ranges::reverse(words);

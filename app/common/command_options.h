@@ -29,43 +29,43 @@ inline std::string check_time(const std::string& text) {
 }
 
 /// Adds --device to a command; its form is checked while the command line is read.
-inline void add_device_option(CLI::App& verb, std::string& device) {
-  verb.add_option("--device", device, "cpu, cuda or cuda:N (default: cuda where usable)")
+inline void add_device_option(CLI::App& command, std::string& device) {
+  command.add_option("--device", device, "cpu, cuda or cuda:N (default: cuda where usable)")
       ->check(check_device);
 }
 
 /// Adds the options to a command; values are checked while the command line is read.
-inline void add_simulation_options(CLI::App& verb, SimulationOptions& options,
+inline void add_simulation_options(CLI::App& command, SimulationOptions& options,
                                    bool scene_required) {
   // The scene and the device.
-  auto* scene =
-      verb.add_option("SCENE", options.scene,
-                      "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
-                      "file");
+  auto* scene = command.add_option(
+      "SCENE", options.scene,
+      "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
+      "file");
   if (scene_required) scene->required();
-  add_device_option(verb, options.device);
-  verb.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
+  add_device_option(command, options.device);
+  command.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
       ->check(CLI::IsMember({"f32", "f64"}));
-  verb.add_option("--threads", options.threads, "threads of the CPU solver (default: all)")
+  command.add_option("--threads", options.threads, "threads of the CPU solver (default: all)")
       ->check(CLI::Range(1, 4096));
 
   // The length of the run, either in steps or in seconds.
-  auto* steps = verb.add_option("--steps", options.steps, "number of steps")
+  auto* steps = command.add_option("--steps", options.steps, "number of steps")
                     ->check(CLI::Range(0L, 100'000'000L));
-  verb.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
+  command.add_option("--time", options.time, "simulated seconds (default: the scene's duration)")
       ->check(check_time)
       ->excludes(steps);
 
   // Changes of the scene and its parameters.
-  verb.add_flag("--repair-start", options.repair_start,
-                "separate faces that intersect a little at the start");
-  verb.add_option("--preset", options.preset,
-                  "fast, normal or accurate: settings measured by bench accuracy");
-  verb.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
+  command.add_flag("--repair-start", options.repair_start,
+                   "separate faces that intersect a little at the start");
+  command.add_option("--preset", options.preset,
+                     "fast, normal or accurate: settings measured by bench accuracy");
+  command.add_option("--set", options.overrides, "KEY=VALUE: a parameter by its dotted name")
       ->allow_extra_args(false);
 
-  verb.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");
-  verb.add_flag("--quiet", options.quiet, "print errors only");
+  command.add_flag("--dump-config", options.dump_config, "print all parameters as JSON and stop");
+  command.add_flag("--quiet", options.quiet, "print errors only");
 }
 
 }  // namespace icloth

@@ -1,4 +1,4 @@
-// Reading files of collision queries, and the verb that tests them.
+// Reading files of collision queries, and the command that tests them.
 #include "app/cli/commands/query_file.h"
 
 #include <gtest/gtest.h>
