@@ -16,6 +16,8 @@ constexpr GLsizei kLogLength = 2000;
 GLuint compile(GLenum stage, std::string_view name, bool draft) {
   std::string source = "#version 450 core\n";
   if (draft) source += "#define DRAFT\n";
+
+  // Errors are reported by the line in the shader's own file.
   source += embedded_shader("lights.glsl");
   if (stage == GL_FRAGMENT_SHADER) source += embedded_shader("shadow_lookup.glsl");
   source += "#line 1\n" + std::string(embedded_shader(name));

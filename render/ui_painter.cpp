@@ -56,6 +56,7 @@ void UiPainter::paint(const UiDrawing& drawing, int width, int height, unsigned 
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_SCISSOR_TEST);
 
+  // Positions are logical pixels, which the program turns into clip space.
   program_.use();
   program_.set("corner", Vec3f{drawing.left, drawing.top, 0});
   program_.set("size", Vec3f{drawing.width, drawing.height, 1});
@@ -69,6 +70,7 @@ void UiPainter::paint(const UiDrawing& drawing, int width, int height, unsigned 
     const GLint bottom = static_cast<GLint>(batch.clip[3]);
     if (right <= left || bottom <= top) continue;
     glScissor(left, height - bottom, right - left, bottom - top);
+
     const std::uintptr_t offset = batch.first_index * sizeof(std::uint16_t);
     glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(batch.index_count),
                              GL_UNSIGNED_SHORT, reinterpret_cast<const void*>(offset),

@@ -86,6 +86,7 @@ void Commands::add_view() {
   CLI::App* command = add_command("view", "the window", action, &view.simulation);
   add_simulation_options(*command, view.simulation, false);
 
+  // Files that the window writes, how it draws, and how it starts.
   command->add_option("--record", view.record_file, "save the session as a recording at the end");
   command->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
   command
@@ -129,6 +130,8 @@ void Commands::add_render() {
 #endif
   };
   CLI::App* command = add_command("render", "headless pictures", action, &render.simulation);
+
+  // The scene, the device and the length of the run before the picture.
   add_simulation_options(*command, render.simulation, true);
 
   // The picture itself: where it goes, and what it shows how well.
@@ -140,6 +143,7 @@ void Commands::add_render() {
       ->capture_default_str();
 
   command
+
       ->add_option("--vertices", render.vertices,
                    "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
       ->check(CLI::IsMember({"auto", "interop", "host"}))
@@ -172,6 +176,7 @@ void Commands::add_tests() {
 
   CLI::App* command = add_command("detect", "all collisions between two frames of a mesh",
                                   [this] { return run_detect(detect); });
+
   command->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
   command->add_option("T1", detect.end, "the same mesh at the end")->required();
   command->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");

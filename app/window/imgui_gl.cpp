@@ -20,6 +20,7 @@ Ui::Ui(Window& window) : scale_(window.content_scale()) {
 
   // The program keeps no files of the interface, and draws its triangles itself.
   ImGuiIO& io = ImGui::GetIO();
+
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.BackendRendererName = "icloth";
@@ -66,6 +67,7 @@ void Ui::paint(int width, int height, unsigned framebuffer) {
                : pixel > static_cast<float>(limit) ? static_cast<float>(limit)
                                                    : pixel;
       };
+
       const ImVec4& r = command.ClipRect;
       batches_.push_back({{clip(r.x, data->DisplayPos.x, scale.x, width),
                            clip(r.y, data->DisplayPos.y, scale.y, height),
@@ -76,6 +78,7 @@ void Ui::paint(int width, int height, unsigned framebuffer) {
                           command.VtxOffset});
     }
 
+    // ImGui's vertices have the painter's layout, which the assertions above check.
     const auto* vertices = reinterpret_cast<const UiVertex*>(list.VtxBuffer.Data);
     painter_.paint({{vertices, static_cast<std::size_t>(list.VtxBuffer.Size)},
                     {list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.Size)},

@@ -15,6 +15,7 @@ void TestStatusFile::write(const TestStatus& s) const {
   std::FILE* file = std::fopen(part.c_str(), "w");
   if (!file) return;
 
+  // The line is JSON, written by hand as its values need no escaping.
   const auto word = [](bool b) { return b ? "true" : "false"; };
   std::fprintf(file,
                "{\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "

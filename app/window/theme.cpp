@@ -96,6 +96,7 @@ void apply_theme(float scale) {
   style.FramePadding = {8, 4};
   style.ItemSpacing = {8, 6};
   style.ItemInnerSpacing = {6, 4};
+
   style.ScrollbarSize = 10;
   style.GrabMinSize = 7;
   style.WindowBorderSize = 0;

@@ -35,9 +35,11 @@ void Viewer::act(Action action, double amount) {
     case Action::toggle_panels:
       state_.panels = !state_.panels;
       break;
+
     case Action::help:
       state_.help = !state_.help;
       break;
+
     case Action::full_screen:
       window_.toggle_full_screen();
       break;
@@ -64,6 +66,7 @@ bool Viewer::act_on_hands(Action action, double amount) {
     case Action::grab_handle:
       drag_.begin_handle(menu_handle_, cursor_ray(), false);
       return true;
+
     case Action::add_handle:
       drag_.begin_handle(menu_handle_, cursor_ray(), true);
       return true;
@@ -93,6 +96,7 @@ bool Viewer::act_on_hands(Action action, double amount) {
     case Action::grab_depth:
       drag_.change_depth(amount, cursor_ray());
       return true;
+
     case Action::grab_radius:
       drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
       drag_.change_radius(amount);

@@ -92,6 +92,7 @@ void Viewer::handle(const WindowEvent& event) {
     case WindowEvent::Kind::wheel:
       wheel(event);
       break;
+
     case WindowEvent::Kind::leave:
       pointer_inside_ = false;
       break;

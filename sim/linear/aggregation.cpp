@@ -91,6 +91,8 @@ class Growth {
         if (other == mine || members_[at(other)] <= small || members_[at(other)] >= full) return;
         if (best == kNone || members_[at(other)] < members_[at(best)]) best = other;
       });
+
+      // A node without such a neighbour stays where it is.
       if (best == kNone) continue;
       --members_[at(mine)];
       ++members_[at(best)];

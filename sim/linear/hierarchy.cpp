@@ -280,6 +280,8 @@ void Hierarchy::fill_matrix(const SystemView& system) {
     }
 
     for_each("implicit.coarse_blocks", blocks_[l].count, sum);
+
+    // The masses, which must not be divided by kOverestimate, are added to the diagonals.
     for_each("implicit.coarse_masses", level_[l].count,
              AddMass{.child_first = child_first_.view(),
                      .child = child_.view(),
@@ -307,6 +309,7 @@ void Hierarchy::fill_contacts(const SystemView& system) {
                             .diagonal = diagonal_.view(),
                             .lumped = lumped_.view(),
                             .smoother = smoother_.view()});
+
   for (int l = 1; l < levels_; ++l)
     for_each("implicit.coarse_nodes", level_[l].count,
              FinishLevel{.child_first = child_first_.view(),
@@ -325,12 +328,15 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.inverse_diagonal = inverse_diagonal;
   m.inverse_mass = system.inverse_mass;
   m.group = group_.view();
+
   m.child_first = child_first_.view();
   m.child = child_.view();
   m.parent = parent_.view();
 
   m.matrix = matrix_.view();
   m.coupled = coupled_.rows();
+
+  // The vectors serve every application, one level after the other.
   m.smoother = smoother_.view();
   m.b = b_.view();
   m.z = z_.view();

@@ -61,6 +61,7 @@ bool compare_responses(Build build, Report& report) {
       }
       clean = clean && penetrations == 0;
 
+      // A state with penetrations must not pass as a solution.
       table.add({on_off(proximity), on_off(zones), count(first), count(left),
                  std::to_string(penetrations)});
     }
@@ -89,6 +90,7 @@ void compare_incremental(Frames& frames, Report& report) {
         p.broad_phase.count_tests = true;
       });
 
+    // The ratios tell how many tests the incremental detection saves.
     const auto number = [](std::int64_t value) { return static_cast<double>(value); };
     table.add(
         {std::to_string(state.step + 1), std::to_string(step[0].rounds),
@@ -209,6 +211,7 @@ void show_iterations(const Frames& frames, Report& report) {
     most_iterations = std::max(most_iterations, i);
   }
 
+  // The table holds the mean and the extremes.
   Table table("iterations", "Over " + std::to_string(frames.reports().size()) + " steps",
               {"mean rounds", "most rounds", "most iterations"});
   table.add({format_number(rounds / static_cast<double>(frames.reports().size()), 3),
@@ -299,6 +302,7 @@ int run_paper(const BenchOptions& options) {
   const Build build = only_build(options);
   Report report = begin_report(options, build);
 
+  // Contact responses first, then what impact zones and detection do to tangled states.
   bool clean = compare_responses(build, report);
 
   // The tangled states serve all comparisons of collision handling.

@@ -24,7 +24,10 @@ std::vector<Part> parts(const Scene& whole) {
   return {
       {"one sheet: stretching, gravity, collision detection", [](Scene&) {}},
       {"bending", [](Scene& s) { s.parameters.material.bend_scale = 1; }},
+
       {"wind", [](Scene& s) { s.parameters.wind.z = 0.5, s.parameters.wind.air_density = 1; }},
+
+      // The body comes in two steps, first at rest and then in motion, and friction with it.
       {"repulsion, without friction", [](Scene& s) { s.parameters.proximity.enabled = true; }},
       {"ball at rest before the sheet",
        [ball](Scene& s) {
@@ -38,6 +41,8 @@ std::vector<Part> parts(const Scene& whole) {
          s.parameters.proximity.friction_cloth = 0.6;
          s.parameters.proximity.friction_obstacle = 0.3;
        }},
+
+      // More layers, and the friction inside the fabric.
       {"second sheet",
        [cloths](Scene& s) {
          s.cloths = {cloths[2], cloths[1]};

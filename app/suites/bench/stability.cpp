@@ -41,6 +41,7 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   json["required"] = test.required;
   json["build"] = build_name(build);
 
+  // The work and the extremes of the case.
   json["steps"] = r.steps;
   json["substeps"] = r.substeps;
   json["retries"] = r.retries;
@@ -54,6 +55,8 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   json["penetrations"] = r.penetrations;
   json["finite"] = r.finite;
   json["seconds"] = r.seconds;
+
+  // The verdict.
   json["passed"] = r.passed();
   json["failures"] = r.failures;
   json["note"] = r.note;

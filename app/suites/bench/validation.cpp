@@ -31,10 +31,14 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   json["name"] = test.name;
   json["source"] = test.source;
   json["build"] = build_name(build);
+
   json["steps"] = r.steps;
   json["seconds"] = r.seconds;
+
   json["passed"] = r.passed();
   json["failures"] = r.failures;
+
+  // Each comparison is an object of its own.
   json["figures"] = Json::array();
   for (const Comparison& f : r.comparisons)
     json["figures"].push_back({{"what", f.what},

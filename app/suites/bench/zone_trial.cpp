@@ -23,8 +23,11 @@ struct TrialZone {
 /// upper one that it has passed.
 TrialZone make_zone(Index side) {
   std::mt19937 random(42);  // its numbers are the same everywhere; those of distributions are not
+
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   TrialZone zone;
+
+  // A sheet lies in a plane, its vertices moved at random by up to a share of the spacing.
   const auto add_sheet = [&](double height, double jitter) {
     for (Index i = 0; i < side; ++i)
       for (Index k = 0; k < side; ++k)
@@ -32,6 +35,7 @@ TrialZone make_zone(Index side) {
                                                     kSpacing * (k + jitter * uniform())}));
   };
 
+  // The upper sheet is regular, so that the cell below a vertex follows from its coordinates.
   add_sheet(0.5 * kDepth, 0);
   add_sheet(-0.5 * kDepth, 0.9);
 
@@ -162,6 +166,8 @@ ZoneTrial solve_zone_trial(Index side, ZoneSolver solver, int iterations) {
   ZoneTrial best;
   for (int run = 0; run < (sizeof(Real) == 8 ? 1 : 3); ++run) {
     Trial trial(side);
+
+    // Making the zone is not part of the time.
     const auto clock = std::chrono::steady_clock::now();
     switch (solver) {
       case ZoneSolver::augmented_lagrangian:
@@ -179,6 +185,7 @@ ZoneTrial solve_zone_trial(Index side, ZoneSolver solver, int iterations) {
     const ZoneTrial result = trial.result();
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - clock).count();
+
     const double least = run == 0 ? ms : std::min(ms, best.milliseconds);
     best = result;
     best.milliseconds = least;

@@ -99,6 +99,7 @@ std::string format_number(double value, int digits) {
 std::string html_text(const std::string& text) {
   std::string out;
   for (const char c : text) {
+    // These three characters have a meaning in HTML.
     switch (c) {
       case '&':
         out += "&amp;";

@@ -150,6 +150,8 @@ void skirt(CaseRun& run) {
   constexpr double kPi = std::numbers::pi;
   auto scene = new_scene("skirt on a swinging body", 0.02);
   scene->parameters.step.time_step = 0.05;
+
+  // A skirt hangs around a capsule and is pinned at its upper rim.
   scene->cloths = {make_tube(0.155, 0.38, 0.5, run.brief() ? 1000 : 4000)};
   scene->obstacles = {make_body(make_capsule(0.12, 0.6, 600), {0, -0.25, 0})};
 

@@ -81,6 +81,7 @@ void bad_vertices(CaseRun& run) {
 void non_manifold(CaseRun& run) {
   // Three leaves share their middle edges, as in a book.
   auto scene = new_scene("three leaves", 0.03);
+
   Cloth book = strip_mesh({-0.15, 0.12, 0.15}, 0.3, 0.3, 10, 10);
 
   const auto first = static_cast<Index>(book.mesh.positions.size());
@@ -96,6 +97,8 @@ void non_manifold(CaseRun& run) {
     }
 
   book.rest = book.mesh.positions;
+
+  // The book falls open on a ball.
   scene->cloths = {book};
   scene->obstacles = {make_body(make_sphere(0.1, 320), {})};
   run.start(scene);

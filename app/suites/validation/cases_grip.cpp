@@ -140,6 +140,7 @@ std::shared_ptr<Scene> belt_scene(const Strip& strip, double light_leg) {
       },
       plain_fabric(1000, 0, 0.2, 0))};
 
+  // The cylinder is wider than the belt.
   Obstacle cylinder;
   cylinder.name = "cylinder";
   cylinder.mesh = open_cylinder(kCylinder, 0.03, 90, 3);

@@ -72,6 +72,8 @@ void hanging_strip(CaseRun& run) {
 
     run.start(scene);
     run.relax(0.1, 10, 1e-9, 200);
+
+    // The last row has moved down by the elongation of the whole strip.
     const double elongation = -row_mean(strip, run.positions(), strip.rows).y - strip.length;
     run.compare("elongation, k = " + std::to_string(static_cast<int>(tensile)) + " N/m [m]",
                 hanging_elongation(strip.length, 0.187, kGravity, tensile), elongation, 0.01);
@@ -109,6 +111,8 @@ void hung_chain(CaseRun& run) {
 
     run.start(scene);
     run.relax(0.02, 2, 1e-6, 400);
+
+    // The chain hangs lowest in the middle.
     const double sag = -row_mean(strip, run.positions(), strip.rows / 2).y;
     const double span = strip.length / ratio;
     run.compare("sag / span at L/S = " + std::to_string(ratio).substr(0, 4), catenary(ratio).sag,
@@ -164,6 +168,8 @@ void string_frequencies(CaseRun& run) {
   pin_row(scene->cloths[0], strip, strip.rows);
 
   const std::vector<Vec3d>& rest = scene->cloths[0].rest;
+
+  // The tension in rest coordinates, which the frequencies follow from.
   const double tension = tensile * (stretch * stretch - 1) / 2;
   for (int n = 1; n <= (run.brief() ? 2 : 3); ++n) {
     run.start(scene);

@@ -41,6 +41,7 @@ Tip one_free_vertex(const Material& material) {
     tip.cloth.mesh.uv.push_back({uv(0), uv(1), uv(2)});
   }
 
+  // Only vertex 0 can move.
   tip.cloth.rest = tip.cloth.mesh.positions;
   tip.cloth.pins = {1, 2, 3};
   return tip;
@@ -110,6 +111,7 @@ void errors_of_steps(CaseRun& run, Integrator integrator, double error[3]) {
     auto scene = exact_scene("order in dt");
     scene->parameters.step.time_step = dt;
     scene->parameters.implicit.integrator = integrator;
+
     scene->cloths = {sheet};
     pin_row(scene->cloths[0], strip, 0);
     run.start(scene);
@@ -120,6 +122,8 @@ void errors_of_steps(CaseRun& run, Integrator integrator, double error[3]) {
   const double dt = 0.0025;
   const std::vector<double> mass = lumped_mass(sheet);
   const std::vector<Vec3d> fine = end_state(dt / 16);
+
+  // The finest run stands for the exact solution.
   for (int n = 0; n < 3; ++n) {
     const std::vector<Vec3d> x = end_state(dt / (1 << n));
     double sum = 0;
@@ -201,6 +205,7 @@ void momentum(CaseRun& run) {
     const Snapshot before = run.simulator().snapshot();
     run.step();
     const Snapshot after = run.simulator().snapshot();
+
     Vec3d impulse, torque;
     double size = 0, turn = 0;
 

@@ -32,6 +32,7 @@ void draw_pairs(const PanelContext& context) {
   const std::size_t count = start.empty() ? offending.size() : start.size();
   if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
 
+  // The list scrolls beyond six rows, and ends after fifty.
   const float line = ImGui::GetTextLineHeightWithSpacing();
   ImGui::BeginChild("##list", {0, line * static_cast<float>(std::min<std::size_t>(count, 6))});
   for (std::size_t k = 0; k < std::min(count, kMaxListed); ++k) {

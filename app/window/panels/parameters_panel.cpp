@@ -53,6 +53,7 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
                     ", in this scene " + number(edits.start_value(info)) + unit)
                   .c_str());
 
+    // Some parameters act only together with another one.
     if (!info.only_with.empty())
       ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
     ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
@@ -165,6 +166,8 @@ void draw_presets(ParameterEdits& edits) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto count = static_cast<float>(presets().size());
   const float width = (ImGui::GetContentRegionAvail().x - (count - 1) * gap) / count;
+
+  // Buttons of equal width fill the row.
   for (const Preset& preset : presets()) {
     if (&preset != &presets().front()) ImGui::SameLine();
 
