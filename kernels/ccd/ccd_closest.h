@@ -40,7 +40,8 @@ ICLOTH_HD Vec3<N> towards(Vec3<N> d, Vec3<N> r) {
 
 }  // namespace detail
 
-/// Closest points of vertex and face at time t. The vertex is the origin of all coordinates.
+/// Closest points of vertex and face at time t. The differences r are the pair mirrored in a point,
+/// with the vertex at the origin.
 template <class N>
 ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::vf, N>& pair, N t) {
   const Vec3<N> r[3] = {pair.at(t, 0), pair.at(t, 1), pair.at(t, 2)};

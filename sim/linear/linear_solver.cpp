@@ -150,7 +150,6 @@ struct ConjugateGradients {
         } else if (++idle == kPatience) {
           break;
         }
-
       } else {
         dots = precondition(
             team,
