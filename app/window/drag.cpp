@@ -60,7 +60,12 @@ void Drag::send(InputEvent::Kind kind, const Handle& handle) {
 int Drag::add(const ClothHit& hit) {
   const int id = free_id();
   if (id > kMaxId) return 0;
-  handles_.push_back({id, hit.face, hit.barycentric, hit.point, radius_, stiffness_});
+  handles_.push_back({.id = id,
+                      .face = hit.face,
+                      .barycentric = hit.barycentric,
+                      .target = hit.point,
+                      .radius = radius_,
+                      .stiffness = stiffness_});
   send(InputEvent::Kind::grab, handles_.back());
   return id;
 }
@@ -215,8 +220,13 @@ void Drag::restore(std::span<const InputEvent> held) {
   events_.clear();
   for (const InputEvent& grab : held) {
     if (grab.handle > kMaxId) continue;
-    handles_.push_back(
-        {grab.handle, grab.face, grab.barycentric, grab.target, grab.radius, grab.stiffness, true});
+    handles_.push_back({.id = grab.handle,
+                        .face = grab.face,
+                        .barycentric = grab.barycentric,
+                        .target = grab.target,
+                        .radius = grab.radius,
+                        .stiffness = grab.stiffness,
+                        .parked = true});
   }
 
   // A grab may be on its way to the solver while the news of the jump is on its way here, so

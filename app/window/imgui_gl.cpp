@@ -80,14 +80,15 @@ void Ui::paint(int width, int height, unsigned framebuffer) {
 
     // ImGui's vertices have the painter's layout, which the assertions above check.
     const auto* vertices = reinterpret_cast<const UiVertex*>(list.VtxBuffer.Data);
-    painter_.paint({{vertices, static_cast<std::size_t>(list.VtxBuffer.Size)},
-                    {list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.Size)},
-                    batches_,
-                    data->DisplayPos.x,
-                    data->DisplayPos.y,
-                    data->DisplaySize.x,
-                    data->DisplaySize.y},
-                   width, height, framebuffer);
+    const UiDrawing drawing{
+        .vertices = {vertices, static_cast<std::size_t>(list.VtxBuffer.Size)},
+        .indices = {list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.Size)},
+        .batches = batches_,
+        .left = data->DisplayPos.x,
+        .top = data->DisplayPos.y,
+        .width = data->DisplaySize.x,
+        .height = data->DisplaySize.y};
+    painter_.paint(drawing, width, height, framebuffer);
   }
 }
 

@@ -154,8 +154,16 @@ void Viewer::draw_panels() {
 
   // Every panel draws itself; floating ones report their place.
   state_.overlays.clear();
-  PanelContext context{*session_, session_->state(),    edits_, stages_, drag_, *scene_,
-                       world_,    start_intersections_, state_, scale};
+  PanelContext context{.session = *session_,
+                       .state = session_->state(),
+                       .edits = edits_,
+                       .stages = stages_,
+                       .drag = drag_,
+                       .scene = *scene_,
+                       .world = world_,
+                       .start_intersections = start_intersections_,
+                       .ui = state_,
+                       .scale = scale};
   if (state_.panels) draw_side_panel(context, {0, 0, side, high - bar});
   draw_status_bar(context, status_texts(), {0, high - bar, wide, bar});
   draw_failure(context, view_);

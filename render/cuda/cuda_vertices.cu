@@ -156,9 +156,12 @@ std::string CudaWriter::write(const DevicePositions& from) {
 
 /// Writes every byte of both buffers, since mapping loses their content.
 std::string CudaWriter::pack(const DevicePositions& from) {
-  PackVertex pack{
-      from.data, corners_.data<Index>(), first_.data<Index>(), around_.data<Index>(), nullptr,
-      nullptr};
+  PackVertex pack{.source = from.data,
+                  .corners = corners_.data<Index>(),
+                  .first = first_.data<Index>(),
+                  .around = around_.data<Index>(),
+                  .positions = nullptr,
+                  .normals = nullptr};
   std::string failure = mapped_pointer(0, pack.positions);
   if (failure.empty()) failure = mapped_pointer(1, pack.normals);
   if (!failure.empty()) return failure;

@@ -143,8 +143,13 @@ Table table_of(const std::string& scene, const std::vector<Point>& points, doubl
 /// Plots time against error, with one series a knob and the front as a line of its own.
 Plot plot_of(const std::string& scene, const std::vector<Point>& points, const char* what,
              double Errors::*error) {
-  Plot plot{
-      std::string(what) + ": " + scene, "seconds a simulated second", what, true, true, true, {}};
+  Plot plot{.title = std::string(what) + ": " + scene,
+            .x_label = "seconds a simulated second",
+            .y_label = what,
+            .log_x = true,
+            .log_y = true,
+            .markers = true,
+            .series = {}};
   Series front{"front", {}};
 
   // Only the knobs that trade time for error are drawn.

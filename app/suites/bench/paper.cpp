@@ -120,7 +120,12 @@ void compare_zone_solvers(Frames& frames, Report& report) {
   Table table("zone_solvers", "Mean of a step",
               {"solver", "rounds", "iterations", "ms collisions", "impacts left", "max strain",
                "violation / δ", "momentum error"});
-  Plot plot{"Collision handling of single steps", "step", "ms", false, true, true, {}};
+  Plot plot{.title = "Collision handling of single steps",
+            .x_label = "step",
+            .y_label = "ms",
+            .log_y = true,
+            .markers = true,
+            .series = {}};
 
   for (const auto& [solver, name] : kSolvers) {
     double rounds = 0, iterations = 0, ms = 0, left = 0, strain = 0, violation = 0, momentum = 0;
@@ -188,14 +193,16 @@ void compare_with_optimum(Report& report) {
 /// Fig. 5 and 6: shows rounds and iterations of every step.
 void show_iterations(const Frames& frames, Report& report) {
   report.heading("Iterations of every step (Fig. 5 and 6)");
-  Plot iterations{"Rounds and iterations of the zone solver",
-                  "step",
-                  "count",
-                  false,
-                  true,
-                  false,
-                  {{"rounds", {}}, {"iterations, all rounds", {}}, {"impacts before", {}}}};
-  Plot time{"Time of the impact zones", "step", "ms", false, false, false, {{"impact_zones", {}}}};
+  Plot iterations{
+      .title = "Rounds and iterations of the zone solver",
+      .x_label = "step",
+      .y_label = "count",
+      .log_y = true,
+      .series = {{"rounds", {}}, {"iterations, all rounds", {}}, {"impacts before", {}}}};
+  Plot time{.title = "Time of the impact zones",
+            .x_label = "step",
+            .y_label = "ms",
+            .series = {{"impact_zones", {}}}};
 
   // Two plots over the steps, and the extremes for the table.
   double rounds = 0, most_rounds = 0, most_iterations = 0;

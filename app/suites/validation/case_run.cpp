@@ -71,12 +71,21 @@ void CaseRun::add(Comparison comparison) {
 }
 
 void CaseRun::compare(const std::string& what, double reference, double measured, double target) {
-  add({what, reference, measured, std::fabs(measured / reference - 1), target, false});
+  add({.what = what,
+       .reference = reference,
+       .measured = measured,
+       .error = std::fabs(measured / reference - 1),
+       .target = target});
 }
 
 void CaseRun::compare_absolute(const std::string& what, double reference, double measured,
                                double target) {
-  add({what, reference, measured, std::fabs(measured - reference), target, true});
+  add({.what = what,
+       .reference = reference,
+       .measured = measured,
+       .error = std::fabs(measured - reference),
+       .target = target,
+       .absolute = true});
 }
 
 void CaseRun::bound(const std::string& what, double measured, double target) {
