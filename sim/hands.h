@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/scene/input.h"
 #include "sim/scene/world.h"
+#include "sim/state/memory.h"
 
 namespace icloth {
 
@@ -16,9 +16,10 @@ struct HandSpring {
   Vec3d target;      ///< [m]
 };
 
+/// Works on the hands of a memory, `held`, and remembers nothing itself.
 class Hands {
  public:
-  explicit Hands(const World& world) : world_(&world) {}
+  Hands(const World& world, std::vector<HeldPatch>& held) : world_(&world), held_(&held) {}
 
   /// Applies grabs, moves and releases; `positions` (≥ cloth_vertices) is the present state [m].
   /// A grab of a face that does not exist and a move of a handle that is not held are ignored.
@@ -28,12 +29,11 @@ class Hands {
   /// Corners of the faces that were hit, three a hand: all that the rest has to know of the state.
   std::vector<Index> watched() const;
 
-  /// Moves the followed targets on by at most grab_max_speed · dt and limits the pull. `corners`:
+  /// Moves the followed targets on by at most grab.max_speed · dt and limits the pull. `corners`:
   /// positions of the watched vertices [m].
   void advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners);
 
-  void clear() { held_.clear(); }
-  bool empty() const { return held_.empty(); }
+  bool empty() const { return held_->empty(); }
 
   /// One spring for each pulled vertex, by ascending vertex.
   std::vector<HandSpring> springs() const;
@@ -42,22 +42,11 @@ class Hands {
   std::vector<HandleState> states(std::span<const Vec3d> corners) const;
 
  private:
-  struct Held {
-    int handle = 0;
-    Triangle corners{};  ///< vertices of the face that was hit
-    Vec3d barycentric;
-    std::vector<Index> vertices;        ///< the patch
-    std::vector<double> share;          ///< of the stiffness, sums to 1
-    std::vector<Vec3d> offset;          ///< from the hit point at the grab [m]
-    Vec3d target, followed, pulled_to;  ///< asked for; limited in speed; limited in force [m]
-    double stiffness = 0, saturation = 0;
-  };
-
-  Held grab(const InputEvent& event, const Parameters& parameters,
-            std::span<const Vec3d> positions) const;
+  HeldPatch grab(const InputEvent& event, const Parameters& parameters,
+                 std::span<const Vec3d> positions) const;
 
   const World* world_;
-  std::vector<Held> held_;
+  std::vector<HeldPatch>* held_;
 };
 
 }  // namespace icloth

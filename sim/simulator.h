@@ -10,6 +10,7 @@
 #include "sim/scene/input.h"
 #include "sim/scene/parameters.h"
 #include "sim/scene/scene.h"
+#include "sim/state/memory.h"
 #include "sim/state/report.h"
 
 namespace icloth {
@@ -17,37 +18,6 @@ namespace icloth {
 enum class Build { cpu32, cpu64, cuda32 };
 
 std::string_view build_name(Build build);
-
-/// Tangential force that a pair in contact holds, see kernels/contact.h.
-struct PairForce {
-  std::uint64_t pair = 0;  ///< key of the pair
-  Vec3d force;             ///< [N]
-  bool stuck = false;      ///< it stuck, else it was sliding
-};
-
-/// Deformation of a face at which the friction of its yarns pulls nowhere, see
-/// kernels/yarn_friction.h.
-struct FaceYarns {
-  double curvature[3];  ///< uu, uv, vv [1/m]
-  double shear;         ///< Green strain G_uv
-};
-
-/// State of a simulation, enough to go on from. Positions hold all vertices (cloths in scene
-/// order, then obstacles), velocities likewise.
-struct Snapshot {
-  std::int64_t step = 0;
-  double time = 0;
-  std::vector<Vec3d> positions;     ///< [m] (V)
-  std::vector<Vec3d> velocities;    ///< [m/s] (V)
-  std::vector<PairForce> friction;  ///< sorted by pair
-  /// Of an integrator that goes on from two states (sim/mechanics/time_rule.h): the cloths' way and
-  /// change of velocity in the last step [m], [m/s], and its length [s]; empty and 0 where there is
-  /// none.
-  std::vector<Vec3d> past_motion{}, past_change{};
-  double past_dt = 0;
-  std::vector<FaceYarns> yarns{};  ///< (cloth faces), empty where no yarns rub
-  bool yarns_bend = false;         ///< they know curvatures, which single hinges do not
-};
 
 class Simulator {
  public:
@@ -72,8 +42,10 @@ class Simulator {
   /// The same on the device that computes them, for a reader there: `slot` becomes a copy of its
   /// own (kernels/device_positions.h), empty where the solver runs on the CPU. Does not wait.
   virtual void positions_on_device(std::unique_ptr<DevicePositions>& slot) const { slot.reset(); }
+  /// All that the next step goes on from, apart from the parameters.
   virtual Snapshot snapshot() const = 0;
-  /// Back to a state of this scene; held handles are dropped.
+  /// Replaces the state, held handles included, by one of this scene: the next steps are those
+  /// that followed the snapshot, bit for bit. Throws std::invalid_argument for another scene's.
   virtual void restore(const Snapshot& snapshot) = 0;
   virtual std::vector<HandleState> handles() const = 0;
 };

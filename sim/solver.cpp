@@ -74,6 +74,8 @@ void Topology::upload(const World& world) {
   cloth_faces = world.cloth_faces, faces = world.faces;
   hinge_count = static_cast<Index>(world.hinges.size());
   median_edge = real(world.median_edge);
+
+  // The mesh, and the measures of its elements at rest.
   const auto number = [](double v) { return real(v); };
   upload_as(face, world.face, [](const Triangle& t) { return Int3{{t[0], t[1], t[2]}}; });
   upload_as(edge, world.edge, [](const std::array<Index, 2>& e) { return Int2{{e[0], e[1]}}; });
@@ -85,6 +87,8 @@ void Topology::upload(const World& world) {
   upload_as(face_inverse, world.face_inverse, [](const std::array<double, 4>& m) {
     return Inverse{{real(m[0]), real(m[1]), real(m[2]), real(m[3])}};
   });
+
+  // A friction of its own is rare, and where no object has one the list stays empty.
   object.upload(world.object);
   const bool own_friction =
       std::any_of(world.objects.begin(), world.objects.end(),
@@ -93,6 +97,8 @@ void Topology::upload(const World& world) {
   if (own_friction)
     upload_as(object_friction, world.objects,
               [](const WorldObject& o) { return real(o.friction.value_or(-1)); });
+
+  // Each face has the fabric of its cloth, and a hinge those of its two faces.
   face_fabric.upload(world.face_material);
   upload_as(hinge, world.hinges, [&](const Hinge& h) {
     const auto fabric_of = [&](Index f) {
@@ -110,7 +116,10 @@ void Topology::upload(const World& world) {
 }
 
 Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
-    : device_(device), scene_(std::move(scene)), world_(std::move(world)), hands_(world_) {
+    : device_(device),
+      scene_(std::move(scene)),
+      world_(std::move(world)),
+      hands_(world_, state_.hands) {
   mesh_.upload(world_);
   upload_as(state_.x1, world_.position, to_real);
   state_.x0.copy_from(state_.x1);
@@ -134,11 +143,16 @@ icloth::Build Solver::build() const {
 void Solver::set_parameters(const Parameters& parameters) {
   use_device();
   parameters_ = parameters;
+
+  // Fabrics depend on the parameters, and so does the pattern of the matrix: cloth that does not
+  // resist bending couples only the corners of faces.
   upload_fabrics(mesh_, *scene_, parameters);
   if (mesh_.bends && parameters.material.bending == BendingModel::plate)
     upload_plates(mesh_, world_);
   if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
   pattern_bends_ = mesh_.bends;
+
+  // Pinned vertices get an infinite mass, as obstacles have.
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
   free_mass_ = 0;
   for (std::size_t i = 0; i < world_.mass.size(); ++i) {
@@ -147,14 +161,19 @@ void Solver::set_parameters(const Parameters& parameters) {
     inverse[i] = Real(1) / mass[i];
     free_mass_ += static_cast<double>(mass[i]);
   }
-  energy_.reset();
   state_.mass.upload(mass);
   state_.inverse_mass.upload(inverse);
-  broad_phase_.invalidate();  // a new thickness needs other boxes
+
+  // The energy depends on the parameters, and a new thickness needs other boxes.
+  energy_.reset();
+  broad_phase_.invalidate(state_);
 }
 
 void Solver::begin_substep(double start, double dt) {
   state_.x0.copy_from(state_.x1);
+
+  // Obstacles that move are posed at the end of the substep. In between they move in straight
+  // lines, as the cloth does.
   std::vector<Vec3d> end;
   std::vector<Vec3r> x1;
   for (const WorldObject& object : world_.objects) {
@@ -208,11 +227,7 @@ int Solver::travel_level() const {
 }
 
 void Solver::save_start() {
-  start_x_.copy_from(state_.x1);
-  start_v_.copy_from(state_.v);
-  start_held_.copy_from(proximity_.held());
-  start_past_.copy_from(state_.past);
-  start_yarns_.copy_from(state_.yarns);
+  start_.copy_from(state_);
   work_ = 0;
   if (!energy_)
     energy_ = figures_of(mesh_, parameters_, state_.mass.view(), state_.x1.view(), state_.v.view())
@@ -220,12 +235,8 @@ void Solver::save_start() {
 }
 
 void Solver::back_to_start() {
-  state_.x1.copy_from(start_x_);
-  state_.v.copy_from(start_v_);
-  proximity_.held().copy_from(start_held_);
-  state_.past.copy_from(start_past_);
-  state_.yarns.copy_from(start_yarns_);
-  broad_phase_.invalidate();
+  static_cast<Memory&>(state_).copy_from(start_);
+  broad_phase_.follow_memory();
 }
 
 void Solver::report_offending(StepReport& report) const {
@@ -233,6 +244,8 @@ void Solver::report_offending(StepReport& report) const {
   report.offending.clear();
   report.pinched = report.finite;
   if (!report.finite) return;
+
+  // Where every pair that is left is with an obstacle, it is the obstacles that leave no room.
   for (const Impact& impact : ccd_.impacts().download()) {
     const Index* v = impact.s.v;
     report.pinched =
@@ -264,12 +277,17 @@ std::vector<Vec3d> Solver::watched_positions() const {
 void Solver::use_hands(std::span<const InputEvent> events) {
   state_.has_springs = false;
   if (events.empty() && hands_.empty()) return;
+
+  // All positions come to the host only where a patch is grabbed; the corners of the faces that
+  // are held tell the rest.
   const bool grabs = std::any_of(events.begin(), events.end(), [](const InputEvent& event) {
     return event.kind == InputEvent::Kind::grab;
   });
   hands_.apply(events, parameters_, grabs ? cloth_positions() : std::vector<Vec3d>{});
   if (hands_.empty()) return;
   hands_.advance(parameters_.step.time_step, parameters_, watched_positions());
+
+  // The springs of the patches, one at most for each vertex, as the implicit step reads them.
   upload_as(springs_, hands_.springs(), [](const HandSpring& s) {
     return Spring{s.vertex, real(s.stiffness), to_real(s.target)};
   });
@@ -301,71 +319,15 @@ void Solver::positions_on_device(std::unique_ptr<DevicePositions>& slot) const {
 
 Snapshot Solver::snapshot() const {
   use_device();
-  Snapshot s;
-  s.step = step_index_;
-  s.time = time_;
-  for (const Vec3r& x : state_.x1.download()) s.positions.push_back(convert<double>(x));
-  for (const Vec3r& v : state_.v.download()) s.velocities.push_back(convert<double>(v));
-  for (const HeldForce& held : proximity_.held().download())
-    s.friction.push_back({held.key, convert<double>(held.force), held.stuck != 0});
-  for (const YarnAnchor& y : state_.yarns.download()) {
-    const auto number = [](Real v) { return static_cast<double>(v); };
-    s.yarns.push_back({{number(y.curvature.uu), number(y.curvature.uv), number(y.curvature.vv)},
-                       number(y.shear)});
-  }
-  s.yarns_bend = state_.yarns_bend;
-  s.past_dt = state_.past.dt;
-  if (!(s.past_dt > 0)) return s;
-  for (const Vec3r& d : state_.past.motion.download()) s.past_motion.push_back(convert<double>(d));
-  for (const Vec3r& d : state_.past.change.download()) s.past_change.push_back(convert<double>(d));
-  return s;
+  return download(state_);
 }
 
 void Solver::restore(const Snapshot& snapshot) {
-  const auto require = [](const char* what, std::size_t given, Index expected) {
-    if (given != static_cast<std::size_t>(expected))
-      throw std::invalid_argument("snapshot of another scene: " + std::to_string(given) + " " +
-                                  what + ", expected " + std::to_string(expected));
-  };
-  require("positions", snapshot.positions.size(), mesh_.vertices);
-  require("velocities", snapshot.velocities.size(), mesh_.vertices);
-  if (snapshot.past_dt > 0) {
-    require("ways of the step before", snapshot.past_motion.size(), mesh_.cloth_vertices);
-    require("changes of velocity of the step before", snapshot.past_change.size(),
-            mesh_.cloth_vertices);
-  }
-  if (!snapshot.yarns.empty())
-    require("faces with friction of yarns", snapshot.yarns.size(), mesh_.cloth_faces);
+  check_memory(snapshot, {mesh_.vertices, mesh_.cloth_vertices, mesh_.cloth_faces});
   use_device();
-  step_index_ = snapshot.step;
-  time_ = snapshot.time;
-  upload_as(state_.x1, snapshot.positions, to_real);
-  upload_as(state_.v, snapshot.velocities, to_real);
-  state_.x0.copy_from(state_.x1);
-  upload_as(proximity_.held(), snapshot.friction, [](const PairForce& held) {
-    return HeldForce{held.pair, to_real(held.force), held.stuck ? 1 : 0};
-  });
-  restore_past(snapshot);
-  restore_yarns(snapshot);
-  hands_.clear();
-  broad_phase_.invalidate();
+  upload(snapshot, state_);
+  broad_phase_.follow_memory();
   energy_.reset();
-}
-
-void Solver::restore_past(const Snapshot& snapshot) {
-  state_.past.forget();
-  if (!(snapshot.past_dt > 0)) return;
-  state_.past.dt = snapshot.past_dt;
-  upload_as(state_.past.motion, snapshot.past_motion, to_real);
-  upload_as(state_.past.change, snapshot.past_change, to_real);
-}
-
-void Solver::restore_yarns(const Snapshot& snapshot) {
-  state_.yarns_bend = snapshot.yarns_bend;
-  upload_as(state_.yarns, snapshot.yarns, [](const FaceYarns& y) {
-    return YarnAnchor{{real(y.curvature[0]), real(y.curvature[1]), real(y.curvature[2])},
-                      real(y.shear)};
-  });
 }
 
 std::vector<HandleState> Solver::handles() const {

@@ -28,8 +28,8 @@ class Solver final : public Simulator {
   const Scene& scene() const override { return *scene_; }
   const Parameters& parameters() const override { return parameters_; }
   void set_parameters(const Parameters& parameters) override;
-  double time() const override { return time_; }
-  std::int64_t step_index() const override { return step_index_; }
+  double time() const override { return state_.time; }
+  std::int64_t step_index() const override { return state_.step; }
   std::uint64_t state_hash() const override;
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
@@ -56,8 +56,6 @@ class Solver final : public Simulator {
   void back_to_substep_start();
   void save_start();
   void back_to_start();
-  void restore_past(const Snapshot& snapshot);
-  void restore_yarns(const Snapshot& snapshot);
   std::vector<Vec3d> cloth_positions() const;
   std::vector<Vec3d> watched_positions() const;  ///< of the vertices that hands_ watches
 
@@ -67,20 +65,16 @@ class Solver final : public Simulator {
   Parameters parameters_;
   Topology mesh_;
   State state_;
-  Array<Vec3r> start_x_, start_v_;  ///< state before the whole step (vertices), save_start
-  Array<HeldForce> start_held_;     ///< likewise
-  Past start_past_;                 ///< likewise
-  Array<YarnAnchor> start_yarns_;   ///< likewise
-  Hands hands_;
+  Memory start_;                           ///< before the whole step, save_start
+  Hands hands_;                            ///< work on state_.hands
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions
-  mutable Array<Vec3r> watched_position_;  ///< likewise
-  double time_ = 0;
-  std::int64_t step_index_ = 0;
-  double free_mass_ = 0;          ///< of the vertices that are not pinned [kg], set_parameters
-  std::optional<double> energy_;  ///< of the state, where it is known [J], step
-  double work_ = 0;               ///< on the cloth in the step so far [J], accept_substep
-  Array<Vec3r> candidate_v_;      ///< velocity without impacts (cloth_vertices), zone_work
+  mutable Array<Vec3r> watched_position_;  ///< their positions [m], watched_positions
+  double free_mass_ = 0;  ///< of the vertices that are not pinned [kg], set_parameters
+  /// Of the state, where it is known [J], step. It follows from memory and parameters.
+  std::optional<double> energy_;
+  double work_ = 0;           ///< on the cloth in the step so far [J], accept_substep
+  Array<Vec3r> candidate_v_;  ///< velocity without impacts (cloth_vertices), zone_work
 
   BroadPhase broad_phase_;
   Proximity proximity_;

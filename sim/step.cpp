@@ -34,9 +34,9 @@ void timed(double& milliseconds, const Stage& stage) {
 }  // namespace
 
 bool Solver::try_substep(StepReport& report, double start, double dt, bool last_resort) {
+  // Obstacles move first: pairs are found along their paths.
   begin_substep(start, dt);
   SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
-
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
   timed(report.ms_proximity, [&] {
     if (parameters_.proximity.enabled)
@@ -44,6 +44,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
     else
       proximity_.clear();
   });
+
+  // The candidate, which forces alone decide and which may penetrate.
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   report.finite = all_finite(state_);
   if (!report.finite) return false;
@@ -52,6 +54,7 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
       implicit_.linearization_error() > parameters_.implicit.max_linearization_error)
     return false;
 
+  // Impacts of the candidate are corrected, or in the last resort taken back.
   return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
 }
 
@@ -64,6 +67,8 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
     if (report.impacts_left == 0) return true;
     if (round == parameters_.impact_zones.max_rounds || !parameters_.impact_zones.enabled)
       return false;
+
+    // Constraints are kept over the rounds, so that a correction does not undo those before it.
     ++report.rounds;
     timed(report.ms_impact_zones, [&] { impact_zones_.solve(step, ccd_.impacts()); });
     // A correction of more than about an edge would tear the fabric; half the step corrects less.
@@ -80,6 +85,8 @@ bool Solver::resolve_by_rollback(SubstepContext& step) {
   if (!step.report.finite || !parameters_.impact_zones.enabled) return false;
   impact_zones_.back_to_candidate(step);
   find_impacts(step, true);
+
+  // Each round takes vertices back to the start, and there are only so many.
   while (step.report.impacts_left > 0) {
     ++step.report.rounds;
     bool moved = false;
@@ -110,22 +117,26 @@ void Solver::find_impacts(SubstepContext& step, bool first_round) {
 StepReport Solver::step(std::span<const InputEvent> events) {
   use_device();
   StepReport report;
-  report.step = step_index_;
+  report.step = state_.step;
   report.dt = parameters_.step.time_step;
   timed(report.ms_total, [&] {
+    // A refused step goes back to here. What hands were told to do is not undone by that.
     match_yarns(mesh_, parameters_, state_);
-    save_start();
     use_hands(events);
+    save_start();
+
     // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.
     const int levels = parameters_.step.max_substep_levels;
     const std::int64_t whole = std::int64_t{1} << levels;
     std::int64_t done = 0;
     int level = travel_level();
     report.substeps = 0;
+
+    // A substep that is not accepted is tried again at half its length.
     while (done < whole && report.accepted) {
       const double dt = report.dt / static_cast<double>(std::int64_t{1} << level);
       const double start =
-          time_ + report.dt * static_cast<double>(done) / static_cast<double>(whole);
+          state_.time + report.dt * static_cast<double>(done) / static_cast<double>(whole);
       if (try_substep(report, start, dt, level == levels)) {
         accept_substep(report, dt);
         ++report.substeps;
@@ -138,21 +149,25 @@ StepReport Solver::step(std::span<const InputEvent> events) {
         report.accepted = ++level <= levels;
       }
     }
+
     if (report.accepted) {
       report.offending.clear();
       report.pinched = false;
-      time_ += report.dt;
-      report.step = ++step_index_;
+      state_.time += report.dt;
+      report.step = ++state_.step;
     } else {
       back_to_start();
       report.momentum_error = 0;
     }
+
+    // Energies and hash are those of the state that was reached, or kept.
     const double energy = report_state(mesh_, state_, parameters_, report);
     if (report.accepted) report.energy_balance = energy - *energy_ - work_;
     energy_ = energy;
     report.state_hash = hash_state(state_);
   });
-  report.time = time_;
+
+  report.time = state_.time;
   report.static_faces = mesh_.faces - report.dynamic_faces;
   report.candidate_pairs = broad_phase_.candidate_count();
   report.ms_other = report.ms_total - report.ms_proximity - report.ms_implicit -

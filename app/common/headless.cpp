@@ -66,7 +66,7 @@ std::size_t count_penetrations(const Simulator& simulator) {
 
   for (const Cloth& cloth : scene.cloths) append(cloth.mesh, 0);
   for (const Obstacle& obstacle : scene.obstacles) append(obstacle.mesh, -1);
-  return find_intersections(state.positions, faces, group).size();
+  return find_intersections(state.x1, faces, group).size();
 }
 
 HeadlessResult run_headless(const HeadlessJob& job) {

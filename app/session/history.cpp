@@ -7,11 +7,7 @@ namespace icloth {
 namespace {
 
 std::size_t size_of(const HistoryEntry& entry) {
-  const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-  const Snapshot& s = entry.snapshot;
-  return sizeof(HistoryEntry) + entry.held.size() * sizeof(InputEvent) + bytes(s.positions) +
-         bytes(s.velocities) + bytes(s.friction) + bytes(s.past_motion) + bytes(s.past_change) +
-         bytes(s.yarns);
+  return sizeof entry - sizeof entry.snapshot + memory_bytes(entry.snapshot);
 }
 
 }  // namespace

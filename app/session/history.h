@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <optional>
 
 #include "sim/scene/input.h"
@@ -16,7 +15,6 @@ struct HistoryEntry {
   Snapshot snapshot;
   std::size_t recorded_steps = 0;  ///< length of the recording at that moment
   Parameters parameters;           ///< in force for the step before
-  std::map<int, InputEvent> held;  ///< handles: their grab with the newest target
 };
 
 /// The newest entries that fit into a number of bytes; at least one is kept.

@@ -12,17 +12,6 @@ namespace {
 constexpr std::size_t kMaxReports = 4096;
 constexpr auto kPublishInterval = std::chrono::milliseconds(4);
 
-/// Keeps the map of held handles in line with an event that is about to be applied.
-void track(std::map<int, InputEvent>& held, const InputEvent& event) {
-  if (event.kind == InputEvent::Kind::release) {
-    held.erase(event.handle);
-  } else if (event.kind == InputEvent::Kind::grab) {
-    held[event.handle] = event;
-  } else if (const auto it = held.find(event.handle); it != held.end()) {
-    it->second.target = event.target;
-  }
-}
-
 InputEvent release_of(int handle) {
   InputEvent event;
   event.kind = InputEvent::Kind::release;
@@ -60,13 +49,14 @@ std::string failure_sentence(const StepReport& report) {
 Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
     : simulator_(std::move(simulator)),
       options_(std::move(options)),
-      recorded_parameters_(simulator_->parameters()),
+      wanted_parameters_(simulator_->parameters()),
+      recorded_parameters_(wanted_parameters_),
       history_(options_.history_bytes) {
   recording_.scene = options_.scene;
   recording_.build = build_name(simulator_->build());
   recording_.overrides = options_.overrides;
   start_.snapshot = simulator_->snapshot();
-  start_.parameters = simulator_->parameters();
+  start_.parameters = recorded_parameters_;
   simulator_->positions(told_positions_);
   if (refused()) fail(options_.refusal);
   publish(true);
@@ -211,13 +201,10 @@ void Session::handle(const Toggle& toggle) {
   }
   scripted_ = toggle.on;
   script_.reset();
-  if (scripted_) {
-    script_.emplace(simulator_->scene());
-  } else {
-    for (const auto& [id, grab] : held_) {
-      if (id >= kFirstScriptedHandle) pending_.push_back(release_of(id));
-    }
-  }
+  if (scripted_)
+    start_script();
+  else
+    release_scripted_handles();
 }
 
 void Session::handle(const Save& save) {
@@ -234,9 +221,7 @@ void Session::handle(const Change& change) {
   const ParameterInfo* info = find_parameter(change.parameter);
   if (!info) return note("There is no parameter " + change.parameter + ".");
   try {
-    Parameters parameters = simulator_->parameters();
-    set_parameter(parameters, *info, change.value);
-    simulator_->set_parameters(parameters);
+    set_parameter(wanted_parameters_, *info, change.value);
   } catch (const std::exception& error) {
     note(error.what());
   }
@@ -255,22 +240,35 @@ void Session::handle(const InputEvent& event) {
   pending_.push_back(event);
 }
 
+/// What is done to the next step, as it will be recorded. The simulator gets the parameters only
+/// here, as in a replay: what was tried between two steps leaves no trace.
 Recording::Step Session::next_step() {
   Recording::Step step;
+  for (const ParameterInfo& info : parameter_table()) {
+    const double wanted = get_parameter(wanted_parameters_, info);
+    if (wanted != get_parameter(recorded_parameters_, info))
+      step.parameters.emplace_back(info.name, wanted);
+  }
+  if (!step.parameters.empty()) simulator_->set_parameters(wanted_parameters_);
+
   step.events = std::exchange(pending_, {});
   if (script_) {
     for (const InputEvent& event :
-         script_->events(simulator_->time(), simulator_->parameters().step.time_step)) {
+         script_->events(simulator_->time(), wanted_parameters_.step.time_step))
       step.events.push_back(event);
-    }
-  }
-  for (const ParameterInfo& info : parameter_table()) {
-    const double now = get_parameter(simulator_->parameters(), info);
-    if (now != get_parameter(recorded_parameters_, info)) {
-      step.parameters.emplace_back(info.name, now);
-    }
   }
   return step;
+}
+
+/// From the present time on. Grabs that an older state holds are not made once more.
+void Session::start_script() {
+  script_.emplace(simulator_->scene());
+  for (const HandleState& handle : simulator_->handles()) script_->go_on_holding(handle.id);
+}
+
+void Session::release_scripted_handles() {
+  for (const HandleState& handle : simulator_->handles())
+    if (handle.id >= kFirstScriptedHandle) pending_.push_back(release_of(handle.id));
 }
 
 void Session::advance() {
@@ -278,15 +276,16 @@ void Session::advance() {
   const Clock::time_point begin = Clock::now();
   Recording::Step step;
   const bool done = guarded([&] {
-    history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_, held_});
+    history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_});
     step = next_step();
     step_begin_ = begin.time_since_epoch().count();
     report_ = simulator_->step(step.events);
   });
   if (!done) return publish(true);
+
+  // The step took place, whether it was accepted or not, so a replay has to make it too.
   step_begin_ = 0;
-  for (const InputEvent& event : step.events) track(held_, event);
-  recorded_parameters_ = simulator_->parameters();
+  recorded_parameters_ = wanted_parameters_;
   recording_.steps.push_back(std::move(step));
   const auto interval = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(recorded_parameters_.step.time_step));
@@ -313,21 +312,23 @@ void Session::finish(const StepReport& report) {
   publish(!playing_);
 }
 
-/// The recording is cut where the entry was taken. The simulator drops held handles when it is
-/// restored, a replay of the cut recording still holds them: they are let go and taken again, so
-/// that both go on from the same state.
+/// The recording is cut where the entry was taken, and the simulator becomes what it was there:
+/// parameters, state and hands. Parameters that the user has changed since are set again with the
+/// next step.
 void Session::go_to(const HistoryEntry& entry) {
   playing_ = single_ = false;
+  simulator_->set_parameters(entry.parameters);
   simulator_->restore(entry.snapshot);
   recording_.steps.resize(entry.recorded_steps);
   recorded_parameters_ = entry.parameters;
+
+  // A scene's own grabs go on only where they are switched on now.
   pending_.clear();
-  for (const auto& [id, grab] : entry.held) pending_.push_back(release_of(id));
-  for (const auto& [id, grab] : entry.held) {
-    if (id < kFirstScriptedHandle) pending_.push_back(grab);
-  }
-  held_ = entry.held;
-  if (scripted_) script_.emplace(simulator_->scene());
+  if (scripted_)
+    start_script();
+  else
+    release_scripted_handles();
+
   report_ = {};
   report_.step = entry.snapshot.step;
   report_.time = entry.snapshot.time;
@@ -359,6 +360,12 @@ void Session::read_positions(PublishedState& state) {
     state.handles.clear();
   }
   state.positions = told_positions_;
+
+  // Events on their way count already: who sees a jump in time must not lose a grab made after it.
+  for (const InputEvent& event : pending_)
+    apply_event(state.handles, event, [](const InputEvent& grab) {
+      return HandleState{handle_of(grab), grab.target};
+    });
 }
 
 /// A fast solver does not publish every step: nobody sees more than the screen shows.
@@ -366,20 +373,20 @@ void Session::publish(bool always) {
   const Clock::time_point now = Clock::now();
   if (!always && now - last_published_ < kPublishInterval) return;
   last_published_ = now;
+
+  // The state, and how it came about.
   PublishedState& state = published_.back();
   state.step = simulator_->step_index();
   state.time = simulator_->time();
   read_positions(state);
-  state.held.clear();
-  std::map<int, InputEvent> held = held_;
-  for (const InputEvent& event : pending_) track(held, event);
-  for (const auto& [id, grab] : held) state.held.push_back(grab);
   state.rewinds = rewinds_;
   state.report = report_;
-  state.parameters = simulator_->parameters();
+  state.parameters = wanted_parameters_;
   state.playing = playing_;
   state.scripted = scripted_;
   state.real_time = options_.real_time;
+
+  // Speed and history, and news for the user.
   const std::size_t count = step_ends_.size();
   const double span =
       count < 2 ? 0 : std::chrono::duration<double>(step_ends_.back() - step_ends_.front()).count();

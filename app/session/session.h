@@ -6,7 +6,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,9 +20,6 @@
 #include "sim/simulator.h"
 
 namespace icloth {
-
-/// Handles of a scene's scripted grabs are numbered from here (sim/scene/input.h).
-inline constexpr int kFirstScriptedHandle = 1000;
 
 struct SessionOptions {
   std::string scene;                      ///< as it is written into recordings
@@ -43,10 +39,10 @@ struct PublishedState {
   /// The same on the solver's device; null: it has none. Each slot of the triple buffer has its
   /// own, so the one that is drawn from is not written.
   std::unique_ptr<DevicePositions> on_device;
-  std::vector<HandleState> handles;  ///< as the solver holds them
-  std::vector<InputEvent> held;      ///< the same as grabs with their newest targets
-  std::uint64_t rewinds = 0;         ///< grows when the state jumps back: handles may be gone
-  StepReport report;                 ///< of the newest step
+  std::vector<HandleState>
+      handles;                ///< as the solver holds them after the events it has yet to see
+  std::uint64_t rewinds = 0;  ///< grows when the state jumps back: handles may be gone
+  StepReport report;          ///< of the newest step
   Parameters parameters;
   bool playing = false;
   bool scripted = false, real_time = true;
@@ -125,6 +121,8 @@ class Session {
   void handle(const InputEvent& event);
   void advance();
   Recording::Step next_step();
+  void start_script();
+  void release_scripted_handles();
   void finish(const StepReport& report);
   void go_to(const HistoryEntry& entry);
   void fail(const std::string& sentence);
@@ -149,8 +147,8 @@ class Session {
   // Of the solver thread alone.
   bool playing_ = false, stopping_ = false, scripted_ = false, single_ = false;
   std::vector<InputEvent> pending_;  ///< events for the next step
-  std::map<int, InputEvent> held_;
   std::optional<ScriptedInput> script_;
+  Parameters wanted_parameters_;    ///< for the next step
   Parameters recorded_parameters_;  ///< in force at the end of the recording
   Recording recording_;
   HistoryEntry start_;

@@ -8,7 +8,6 @@ namespace icloth {
 
 namespace {
 
-constexpr int kMaxId = 999;                           ///< scripted grabs are numbered from 1000
 constexpr double kMinDepth = 0.01, kMaxDepth = 1000;  ///< [m]
 constexpr double kDepthPerNotch = 1.04, kRadiusPerNotch = 1.15, kStiffnessPerNotch = 1.25;
 
@@ -45,27 +44,20 @@ int Drag::free_id() const {
 
 /// Queues an event about a handle for the session.
 void Drag::send(InputEvent::Kind kind, const Handle& handle) {
-  InputEvent event;
-  event.kind = kind;
-  event.handle = handle.id;
-  event.face = handle.face;
-  event.barycentric = handle.barycentric;
-  event.target = handle.target;
-  event.radius = handle.radius;
-  event.stiffness = handle.stiffness;
-  events_.push_back(event);
+  events_.push_back(event_of(kind, handle));
 }
 
 /// Makes a handle at a hit. Returns its id, or 0 when all ids are taken.
 int Drag::add(const ClothHit& hit) {
   const int id = free_id();
-  if (id > kMaxId) return 0;
-  handles_.push_back({.id = id,
-                      .face = hit.face,
-                      .barycentric = hit.barycentric,
-                      .target = hit.point,
-                      .radius = radius_,
-                      .stiffness = stiffness_});
+  if (id >= kFirstScriptedHandle) return 0;
+  const HeldHandle held{.id = id,
+                        .face = hit.face,
+                        .barycentric = hit.barycentric,
+                        .target = hit.point,
+                        .radius = radius_,
+                        .stiffness = stiffness_};
+  handles_.push_back({held});
   send(InputEvent::Kind::grab, handles_.back());
   return id;
 }
@@ -213,21 +205,13 @@ void Drag::release_all() {
   while (!handles_.empty()) release(handles_.back().id);
 }
 
-void Drag::restore(std::span<const InputEvent> held) {
+void Drag::restore(std::span<const HandleState> held) {
   // Only grabs of the user are handles here; scripted ones belong to the scene.
   const std::vector<Handle> had = std::exchange(handles_, {});
   active_ = 0;
   events_.clear();
-  for (const InputEvent& grab : held) {
-    if (grab.handle > kMaxId) continue;
-    handles_.push_back({.id = grab.handle,
-                        .face = grab.face,
-                        .barycentric = grab.barycentric,
-                        .target = grab.target,
-                        .radius = grab.radius,
-                        .stiffness = grab.stiffness,
-                        .parked = true});
-  }
+  for (const HandleState& handle : held)
+    if (handle.id < kFirstScriptedHandle) handles_.push_back({handle, true});
 
   // A grab may be on its way to the solver while the news of the jump is on its way here, so
   // handles that are unknown there are released.

@@ -24,12 +24,7 @@ struct ClothHit {
 };
 
 /// A held patch. It is in the hand or parked; a parked one keeps pulling by itself.
-struct Handle {
-  int id = 0;
-  Index face = 0;
-  Vec3d barycentric{1, 0, 0};
-  Vec3d target;                      ///< [m]
-  double radius = 0, stiffness = 0;  ///< [m], [N/m]
+struct Handle : HeldHandle {
   bool parked = false, selected = false;
 };
 
@@ -71,7 +66,7 @@ class Drag {
 
   /// Call it after the state jumped back in time: only the handles that are held there remain,
   /// parked.
-  void restore(std::span<const InputEvent> held);
+  void restore(std::span<const HandleState> held);
 
   bool grabbing() const { return active_ != 0; }
   int active() const { return active_; }  ///< id of the handle in the hand, 0: none

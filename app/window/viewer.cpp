@@ -121,7 +121,7 @@ void Viewer::take_state() {
   // After a jump back in time the handles and the plots are those of that time.
   if (state.rewinds != seen_rewinds_) {
     seen_rewinds_ = state.rewinds;
-    drag_.restore(state.held);
+    drag_.restore(state.handles);
     stages_.cut(state.step);
   }
 
@@ -266,15 +266,15 @@ std::vector<HandleState> Viewer::handle_states() const {
   const PublishedState& state = session_->state();
   std::vector<HandleState> list;
   for (const Handle& handle : drag_.handles()) {
-    HandleState shown_handle{handle.id, hit_point(handle), handle.target, 0};
+    HandleState shown_handle{handle, hit_point(handle)};
     for (const HandleState& held : state.handles) {
-      if (held.handle == handle.id) shown_handle.saturation = held.saturation;
+      if (held.id == handle.id) shown_handle.saturation = held.saturation;
     }
     list.push_back(shown_handle);
   }
 
   for (const HandleState& held : state.handles) {
-    if (held.handle >= kFirstScriptedHandle) list.push_back(held);
+    if (held.id >= kFirstScriptedHandle) list.push_back(held);
   }
   return list;
 }

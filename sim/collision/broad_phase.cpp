@@ -1,6 +1,7 @@
 #include "sim/collision/broad_phase.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "kernels/parallel/parallel.h"
 
@@ -90,26 +91,32 @@ struct Outside {
 }  // namespace
 
 void BroadPhase::make_boxes(SubstepContext& step, bool predicted, Real pad) {
+  Array<Box>& trusted = step.state.trusted;
+  trusted.resize(step.mesh.vertices);
+  for_each("broad_phase.vertex_boxes", step.mesh.vertices,
+           VertexBoxes{make_paths(step, predicted), trusted.view(), pad});
+  update_hulls(step);
+}
+
+void BroadPhase::update_hulls(SubstepContext& step) {
   const Topology& mesh = step.mesh;
 
-  // Boxes of vertices are made first; those of faces and edges are unions of them.
-  vertex_box_.resize(mesh.vertices);
+  // Boxes of faces and edges are unions of those of their vertices.
+  const View<const Box> trusted = std::as_const(step.state.trusted).view();
   face_box_.resize(mesh.faces);
   edge_box_.resize(mesh.edges);
-  for_each("broad_phase.vertex_boxes", mesh.vertices,
-           VertexBoxes{make_paths(step, predicted), vertex_box_.view(), pad});
   for_each("broad_phase.face_boxes", mesh.faces,
-           FaceBoxes{mesh.face.view(), vertex_box_.view(), face_box_.view()});
+           FaceBoxes{mesh.face.view(), trusted, face_box_.view()});
   for_each("broad_phase.edge_boxes", mesh.edges,
-           EdgeBoxes{mesh.edge.view(), vertex_box_.view(), edge_box_.view()});
+           EdgeBoxes{mesh.edge.view(), trusted, edge_box_.view()});
 
   // The trees keep the order of their leaves for a few refits, after which sorting anew pays.
   if (step.parameters.broad_phase.method == BroadPhaseMethod::tree) {
-    const bool rebuild = !boxes_valid_ || ++refits_ >= step.parameters.broad_phase.rebuild_interval;
+    const bool rebuild = !current_ || ++refits_ >= step.parameters.broad_phase.rebuild_interval;
     if (rebuild) refits_ = 0;
-    tree_.update(mesh, boxes(), rebuild);
+    tree_.update(mesh, boxes(step.state), rebuild);
   }
-  boxes_valid_ = true;
+  current_ = true;
 }
 
 /// The distance by which paths may exceed the expected ones without making the lists anew: the
@@ -127,9 +134,9 @@ void BroadPhase::find_candidates(SubstepContext& step, View<const std::uint8_t> 
   // Both methods can find all pairs, or those with a dirty vertex alone.
   const auto find = [&](auto& finder) {
     if (all)
-      finder.find(step.mesh, boxes(), candidates_);
+      finder.find(step.mesh, boxes(step.state), candidates_);
     else
-      finder.find_dirty(step.mesh, boxes(), dirty, candidates_);
+      finder.find_dirty(step.mesh, boxes(step.state), dirty, candidates_);
   };
   if (step.parameters.broad_phase.method == BroadPhaseMethod::tree)
     find(tree_);
@@ -137,32 +144,40 @@ void BroadPhase::find_candidates(SubstepContext& step, View<const std::uint8_t> 
     find(hash_);
 
   // Only a list of all pairs can serve later rounds and steps.
-  complete_ = all;
+  step.state.trusted_complete = all;
   if (step.parameters.broad_phase.count_tests) step.report.box_tests += candidates_.box_tests;
 }
 
-bool BroadPhase::covers(SubstepContext& step, bool predicted, Real margin) const {
-  return boxes_valid_ &&
+bool BroadPhase::covers(SubstepContext& step, bool predicted, Real margin) {
+  const Array<Box>& trusted = step.state.trusted;
+  return !trusted.empty() &&
          reduce("broad_phase.outside", step.mesh.vertices, Index{0},
-                Outside{make_paths(step, predicted), vertex_box_.view(), margin}, Sum{}) == 0;
+                Outside{make_paths(step, predicted), trusted.view(), margin}, Sum{}) == 0;
 }
 
 void BroadPhase::prepare(SubstepContext& step) {
   // Two elements closer than h must overlap, so each end needs half of h around it.
-  if (complete_ && covers(step, true, static_cast<Real>(0.5) * step.thickness())) return;
-  make_boxes(step, true, slack(step));
+  const bool trusted =
+      step.state.trusted_complete && covers(step, true, static_cast<Real>(0.5) * step.thickness());
+  if (trusted && current_) return;
+
+  // A memory that came from elsewhere brings its boxes, from which the same lists follow again.
+  if (trusted)
+    update_hulls(step);
+  else
+    make_boxes(step, true, slack(step));
   find_candidates(step, {});
 }
 
 void BroadPhase::cover_candidate(SubstepContext& step) {
-  if (complete_ && covers(step, false, Real(0))) return;
+  if (step.state.trusted_complete && covers(step, false, Real(0))) return;
   make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }
 
 void BroadPhase::cover_dirty(SubstepContext& step, View<const std::uint8_t> dirty) {
   const bool covered = covers(step, false, Real(0));
-  if (covered && complete_) return;
+  if (covered && step.state.trusted_complete) return;
   // There is no slack here: lists of dirty pairs serve one round, and tight boxes keep them short.
   if (!covered) make_boxes(step, false, Real(0));
   find_candidates(step, dirty);

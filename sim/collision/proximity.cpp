@@ -229,37 +229,38 @@ constexpr double kRampTime = 0.2;  // [s]
 }  // namespace
 
 /// Layers that start closer than h would be thrown apart by a repulsion that acts at once.
-void Proximity::note_start_gaps(const SubstepContext& step) {
+void Proximity::note_start_gaps(SubstepContext& step) {
   Array<Int4> slots(contacts_.size());
   for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots.view()});
   Incidence incidence;
   incidence.build(slots.view(), step.mesh.cloth_vertices);
-  start_gap_.resize(step.mesh.cloth_vertices);
+  Array<Real>& start_gap = step.state.start_gap;
+  start_gap.resize(step.mesh.cloth_vertices);
   const Index close = reduce("proximity.start_gaps", step.mesh.cloth_vertices, Index{0},
                              StartGap{contacts_.view(), incidence.first(), incidence.entries(),
-                                      start_gap_.view(), step.thickness()},
+                                      start_gap.view(), step.thickness()},
                              Sum{});
-  if (close == 0) start_gap_.resize(0);
+  if (close == 0) start_gap.resize(0);
 }
 
 void Proximity::ramp_thickness(const SubstepContext& step) {
   const double share = std::fmin(step.time / kRampTime, 1.0);
   for_each("proximity.ramp", contacts_.size(),
-           RampThickness{start_gap_.view(), contacts_.view(), static_cast<Real>(share)});
+           RampThickness{step.state.start_gap.view(), contacts_.view(), static_cast<Real>(share)});
 }
 
-void Proximity::keep_friction(const State& state, const Parameters& parameters, Real dt) {
-  held_.resize(0);
+void Proximity::keep_friction(State& state, const Parameters& parameters, Real dt) {
+  state.held.resize(0);
   if (!rubs_) return;
   const ContactLaw law{static_cast<Real>(parameters.proximity.stiffness), dt};
   collect("proximity.keep_friction", contacts_.size(),
-          KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, held_);
+          KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, state.held);
 }
 
-void Proximity::recall_friction() {
-  if (!held_.empty())
+void Proximity::recall_friction(const State& state) {
+  if (!state.held.empty())
     for_each("proximity.recall_friction", contacts_.size(),
-             RecallFriction{held_.view(), contacts_.view()});
+             RecallFriction{state.held.view(), contacts_.view()});
 }
 
 void Proximity::clear() {
@@ -298,9 +299,10 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
           FindEdgeEdge{maker, ee.view(), mesh.edge.view(), mesh.edge_area.view()}, found_);
   append_sorted_("proximity.sort", found_, contacts_);
 
-  recall_friction();
+  recall_friction(s);
   if (step.time == 0) note_start_gaps(step);
-  if (!start_gap_.empty() && step.time < kRampTime) ramp_thickness(step);
+  if (step.time >= kRampTime) step.state.start_gap.resize(0);
+  if (!s.start_gap.empty()) ramp_thickness(step);
   step.report.proximity_pairs = contacts_.size();
   step.report.min_gap = static_cast<double>(
       reduce("proximity.min_gap", contacts_.size(), h, GapOf{contacts_.view()}, Min{}));

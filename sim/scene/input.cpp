@@ -20,7 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFirstScriptedHandle = 1000;
 constexpr Index kLargestIndex = 2147483647;
 constexpr std::string_view kKinds[] = {"grab", "move", "release"};
 
@@ -177,6 +176,11 @@ ScriptedInput::ScriptedInput(const Scene& scene)
   }
 }
 
+void ScriptedInput::go_on_holding(int handle) {
+  const auto i = static_cast<std::size_t>(handle) - kFirstScriptedHandle;
+  if (handle >= kFirstScriptedHandle && i < held_.size()) held_[i] = true;
+}
+
 std::vector<InputEvent> ScriptedInput::events(double time, double dt) {
   std::vector<InputEvent> events;
   const double middle = time + 0.5 * dt;  // rounding of the time must not shift a grab by a step
@@ -186,6 +190,8 @@ std::vector<InputEvent> ScriptedInput::events(double time, double dt) {
     InputEvent event;
     event.handle = kFirstScriptedHandle + static_cast<int>(i);
     event.target = path_target(grab, time + dt);
+
+    // A grab whose time passed before its first step is never made, and needs no release.
     if (middle >= grab.release) {
       done_[i] = true;
       if (!held_[i]) continue;

@@ -1,6 +1,7 @@
 // What a hand does to the cloth: the same events come from the mouse, a scene and a recording.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,45 @@ struct InputEvent {
   double stiffness = 0;        ///< grab: of the whole patch [N/m]; 0: the parameter
 };
 
+/// Handles of a scene's scripted grabs are numbered from here on; a user's lie between 1 and this.
+inline constexpr int kFirstScriptedHandle = 1000;
+
+/// A point of the cloth that is held, from its grab to its release.
+struct HeldHandle {
+  int id = 0;
+  Index face = 0;              ///< global cloth face that was hit
+  Vec3d barycentric{1, 0, 0};  ///< weights of the face's vertices at the hit
+  Vec3d target;                ///< where the hit point is pulled to [m]
+  double radius = 0;           ///< of the patch, in rest space [m]; 0: the parameter
+  double stiffness = 0;        ///< of the whole patch [N/m]; 0: the parameter
+};
+
+inline HeldHandle handle_of(const InputEvent& grab) {
+  return {grab.handle, grab.face, grab.barycentric, grab.target, grab.radius, grab.stiffness};
+}
+
+inline InputEvent event_of(InputEvent::Kind kind, const HeldHandle& handle) {
+  return {kind,          handle.id,     handle.face,     handle.barycentric,
+          handle.target, handle.radius, handle.stiffness};
+}
+
+/// Applies an event to a list of what is held. `take(event)` makes the entry of a grab; a handle
+/// that is held already is let go first. Moves of handles that are not held are ignored.
+template <class Held, class Take>
+void apply_event(std::vector<Held>& held, const InputEvent& event, const Take& take) {
+  const auto old = std::find_if(held.begin(), held.end(),
+                                [&event](const Held& h) { return h.id == event.handle; });
+  if (event.kind == InputEvent::Kind::move) {
+    if (old != held.end()) old->target = event.target;
+    return;
+  }
+  if (old != held.end()) held.erase(old);
+  if (event.kind == InputEvent::Kind::grab) held.push_back(take(event));
+}
+
 /// A held handle as shown to the user.
-struct HandleState {
-  int handle = 0;
+struct HandleState : HeldHandle {
   Vec3d hit;              ///< where the grabbed point is now [m]
-  Vec3d target;           ///< where it is pulled to [m]
   double saturation = 0;  ///< pull / largest allowed pull, 0…1
 };
 
@@ -54,8 +89,11 @@ void save_recording(const Recording& recording, const std::string& path);
 class ScriptedInput {
  public:
   explicit ScriptedInput(const Scene& scene);
-  /// Events for the step that starts at `time` and lasts `dt`. Handles are numbered from 1000.
+  /// Events for the step that starts at `time` and lasts `dt`.
   std::vector<InputEvent> events(double time, double dt);
+  /// Says that a handle is held already, as after going back to an older state. Handles of others
+  /// are ignored.
+  void go_on_holding(int handle);
 
  private:
   const Scene* scene_;

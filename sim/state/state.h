@@ -1,9 +1,8 @@
 // What changes during a simulation. Every buffer: meaning [unit] (shape), written by.
 #pragma once
 
-#include "kernels/stencil.h"
-#include "kernels/yarn_friction.h"
 #include "sim/scene/parameters.h"
+#include "sim/state/device_memory.h"
 #include "sim/state/report.h"
 #include "sim/state/topology.h"
 
@@ -16,28 +15,15 @@ struct Spring {
   Vec3r target;    ///< [m]
 };
 
-/// What a two-step integrator (sim/mechanics/time_rule.h) goes on from.
-struct Past {
-  Array<Vec3r> motion;  ///< x0 − x₋₁ [m] (cloth_vertices), finish_substep
-  /// v0 − v₋₁ [m/s] (cloth_vertices), 0 where the vertex touched something; finish_substep.
-  Array<Vec3r> change;
-  double dt = 0;  ///< of that step [s]; 0: none, the arrays are not used
-
-  void forget() { dt = 0; }
-  void copy_from(const Past& other) {
-    dt = other.dt;
-    if (!(dt > 0)) return;
-    motion.copy_from(other.motion);
-    change.copy_from(other.change);
-  }
-};
-
-struct State {
-  Array<Vec3r> x0;         ///< start of the substep [m] (vertices), begin_substep
-  Array<Vec3r> x1;         ///< end of the substep, a candidate until it is accepted [m] (vertices);
-                           ///< implicit, impact_zones; obstacles: begin_substep
+/// The memory, and the buffers of one substep, which the next one does not read.
+///
+/// Who writes the memory during a step: x1 implicit and impact_zones, v and past finish_substep
+/// (those of moving obstacles begin_substep), held and start_gap proximity, yarns match_yarns and
+/// update_yarn_anchors, trusted broad_phase, hands use_hands. Until a substep is accepted, x1 is a
+/// candidate.
+struct State : Memory {
+  Array<Vec3r> x0;         ///< positions at the start of the substep [m] (vertices), begin_substep
   Array<Vec3r> candidate;  ///< x*, the end without impacts [m] (cloth_vertices), implicit
-  Array<Vec3r> v;          ///< velocity [m/s] (vertices), finish_substep; obstacles: begin_substep
   Array<Real> mass;        ///< with density_scale [kg] (cloth_vertices), set_parameters
   Array<Real> inverse_mass;  ///< 0 for pinned and obstacle vertices [1/kg] (vertices)
 
@@ -46,13 +32,8 @@ struct State {
   Array<Vec3r> spring_target;    ///< [m], undefined where none (cloth_vertices), use_hands
   bool has_springs = false;
 
-  /// Deformation at which the friction between yarns exerts no force (cloth_faces), empty without
-  /// yarn friction; match_yarns, update_yarn_anchors.
-  Array<YarnAnchor> yarns;
-  bool yarns_bend = false;        ///< the anchors hold curvatures beside shear; match_yarns
-  Array<YarnAnchor> yarns_start;  ///< deformation of x0 (as yarns), update_yarn_anchors
-
-  Past past;
+  /// Deformation of x0 (cloth_faces), empty without yarn friction; update_yarn_anchors.
+  Array<YarnAnchor> yarns_start;
 };
 
 /// The data that the stages of one substep share.

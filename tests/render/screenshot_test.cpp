@@ -86,8 +86,8 @@ TEST_F(Screenshot, FabricInTheStudio) {
 
 TEST_F(Screenshot, StrainWithHandlesAndMarkers) {
   const std::vector<HandleState> handles{
-      {1, world_.position[0], world_.position[0] + Vec3d{0.16, 0.02, 0.02}, 0.15},
-      {2, world_.position[30], world_.position[30] + Vec3d{0.1, 0.2, 0.1}, 0.95}};
+      {{.id = 1, .target = world_.position[0] + Vec3d{0.16, 0.02, 0.02}}, world_.position[0], 0.15},
+      {{.id = 2, .target = world_.position[30] + Vec3d{0.1, 0.2, 0.1}}, world_.position[30], 0.95}};
   const std::vector<Index> marked{940, 941, 942, 943, 944}, pins{600, 602, 604};
   const std::vector<Vec3f> hover{positions_[500]};
   frame_.handles = handles;

@@ -95,7 +95,7 @@ TEST(Overlay, KeepsItsSizeInPixels) {
   const World world = sheet_world();
   std::vector<Vec3f> positions;
   for (const Vec3d p : world.position) positions.push_back(convert<float>(p));
-  const std::vector<HandleState> handles{{1, {0, 0, 0}, {0.1, 0, 0}, 0.5}};
+  const std::vector<HandleState> handles{{{.id = 1, .target = {0.1, 0, 0}}, {0, 0, 0}, 0.5}};
   Frame frame;
   frame.positions = positions;
   EXPECT_TRUE(overlay_triangles(world, frame, Camera(), 400).empty());

@@ -67,7 +67,7 @@ class Watched {
   double energy_gained() const { return energy(report_) - energy(last_); }
 
  private:
-  Vec3d change(std::size_t i) const { return after_.velocities[i] - before_.velocities[i]; }
+  Vec3d change(std::size_t i) const { return after_.v[i] - before_.v[i]; }
   static double energy(const StepReport& r) {
     return r.kinetic_energy + r.elastic_energy + r.gravity_energy;
   }

@@ -90,9 +90,9 @@ StartedScene sliding_scarf(float stride) {
   StageStart start;
   start.scene = scene.get();
   start.dt = 0.01f;
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    start.x0.push_back(convert<float>(state.positions[i]));
-    start.velocity.push_back(convert<float>(state.velocities[i]));
+  for (std::size_t i = 0; i < state.x1.size(); ++i) {
+    start.x0.push_back(convert<float>(state.x1[i]));
+    start.velocity.push_back(convert<float>(state.v[i]));
     start.x1.push_back(start.x0[i] + (stride * start.dt) * start.velocity[i]);
   }
   return {scene, start};
@@ -168,7 +168,7 @@ struct ScarfRun {
       EXPECT_TRUE(report.accepted) << "step " << k;
       hashes.push_back(report.state_hash);
     }
-    positions = simulator->snapshot().positions;
+    positions = simulator->snapshot().x1;
     intersections = count_intersections(*scene);
   }
 

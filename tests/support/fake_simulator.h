@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <stdexcept>
 #include <thread>
 
@@ -98,19 +97,25 @@ class FakeSimulator : public Simulator {
   }
   Snapshot snapshot() const override {
     check_device();
-    return {step_, time_, positions_, velocities_, {}};
+    Snapshot snapshot;
+    snapshot.step = step_;
+    snapshot.time = time_;
+    snapshot.x1 = positions_;
+    snapshot.v = velocities_;
+    snapshot.hands = held_;
+    return snapshot;
   }
   void restore(const Snapshot& snapshot) override {
     check_device();
     step_ = snapshot.step;
     time_ = snapshot.time;
-    positions_ = snapshot.positions;
-    velocities_ = snapshot.velocities;
-    held_.clear();
+    positions_ = snapshot.x1;
+    velocities_ = snapshot.v;
+    held_ = snapshot.hands;
   }
   std::vector<HandleState> handles() const override {
     std::vector<HandleState> list;
-    for (const auto& [id, event] : held_) list.push_back({id, positions_[0], event.target, 0.5});
+    for (const HeldPatch& held : held_) list.push_back({held, positions_[0], 0.5});
     return list;
   }
 
@@ -120,23 +125,14 @@ class FakeSimulator : public Simulator {
   }
 
   void apply(const InputEvent& event) {
-    const auto held = held_.find(event.handle);
-    if (event.kind == InputEvent::Kind::grab) {
-      held_[event.handle] = event;
-    } else if (held == held_.end()) {
-      return;
-    } else if (event.kind == InputEvent::Kind::move) {
-      held->second.target = event.target;
-    } else {
-      held_.erase(held);
-    }
+    apply_event(held_, event, [](const InputEvent& grab) { return HeldPatch{handle_of(grab)}; });
   }
 
   void advance() {
     const double dt = parameters_.step.time_step;
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       Vec3d force = -9.0 * (positions_[v] - Vec3d{0, 1, 0});
-      for (const auto& [id, event] : held_) force += 20.0 * (event.target - positions_[v]);
+      for (const HeldPatch& held : held_) force += 20.0 * (held.target - positions_[v]);
       velocities_[v] += dt * force;
       positions_[v] += dt * velocities_[v];
     }
@@ -148,7 +144,7 @@ class FakeSimulator : public Simulator {
   Scene scene_;
   Parameters parameters_;
   std::vector<Vec3d> positions_, velocities_;
-  std::map<int, InputEvent> held_;
+  std::vector<HeldPatch> held_;
   std::int64_t step_ = 0, calls_ = 0;
   double time_ = 0;
   bool lost_ = false;

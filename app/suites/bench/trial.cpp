@@ -37,10 +37,10 @@ double shadow_of(const Scene& scene, const std::vector<Vec3d>& x) {
 /// The state and the energies of the cloths after a step.
 Sample sample_of(const Simulator& simulator, std::size_t vertices, const StepReport& report) {
   Snapshot state = simulator.snapshot();
-  state.positions.resize(vertices);
-  state.velocities.resize(vertices);
-  return {std::move(state.positions), std::move(state.velocities), report.kinetic_energy,
-          report.elastic_energy, report.gravity_energy};
+  state.x1.resize(vertices);
+  state.v.resize(vertices);
+  return {std::move(state.x1), std::move(state.v), report.kinetic_energy, report.elastic_energy,
+          report.gravity_energy};
 }
 
 /// Runs the job, gathers the statistics of its steps, and keeps a sample every `every` steps.

@@ -57,19 +57,19 @@ void CaseRun::throw_cloth(std::size_t cloth, Vec3d velocity) {
   std::size_t first = 0;
   for (std::size_t c = 0; c < cloth; ++c) first += scene.cloths[c].mesh.positions.size();
   const std::size_t end = first + scene.cloths[cloth].mesh.positions.size();
-  for (std::size_t v = first; v < end; ++v) state.velocities[v] = velocity;
-  state.past_dt = 0;
+  for (std::size_t v = first; v < end; ++v) state.v[v] = velocity;
+  state.past.forget();
   simulator_->restore(state);
 }
 
 void CaseRun::check_state() {
   const Snapshot state = simulator_->snapshot();
-  result_.finite = result_.finite && all_finite(state.positions) && all_finite(state.velocities);
+  result_.finite = result_.finite && all_finite(state.x1) && all_finite(state.v);
   if (!result_.finite) return;
   if (!settings_.frames.empty() && result_.states % kExportEvery == 0) write_state();
   ++result_.states;
   result_.penetrations +=
-      static_cast<std::int64_t>(find_intersections(state.positions, faces_, group_).size());
+      static_cast<std::int64_t>(find_intersections(state.x1, faces_, group_).size());
 }
 
 /// Writes cloths and obstacles to one file each, so that other programs can tell them apart.
@@ -93,8 +93,7 @@ void CaseRun::write_state() const {
 void CaseRun::check_refusal(const Snapshot& before, const StepReport& report) {
   ++result_.refused;
   const Snapshot after = simulator_->snapshot();
-  require(after.positions == before.positions && after.velocities == before.velocities &&
-              after.time == before.time,
+  require(after.x1 == before.x1 && after.v == before.v && after.time == before.time,
           "a refused step keeps the state before it");
   if (report.finite) require(!report.offending.empty(), "a refused step names its pairs");
 }

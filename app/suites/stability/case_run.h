@@ -73,7 +73,7 @@ class CaseRun {
   void note(const std::string& text);
 
   const CaseResult& result() const { return result_; }
-  std::vector<Vec3d> positions() const { return simulator_->snapshot().positions; }
+  std::vector<Vec3d> positions() const { return simulator_->snapshot().x1; }
 
   /// Checks the requirements that all cases share and returns the result.
   CaseResult finish();

@@ -28,10 +28,10 @@ void CaseRun::steps(int count) {
 void CaseRun::set_state(const std::vector<Vec3d>& positions, const std::vector<Vec3d>& velocities) {
   // An older state would let the second-order integrator see a jump.
   Snapshot state = simulator_->snapshot();
-  state.positions = positions;
-  state.velocities = velocities;
-  state.velocities.resize(positions.size());
-  state.past_dt = 0;
+  state.x1 = positions;
+  state.v = velocities;
+  state.v.resize(positions.size());
+  state.past.forget();
   simulator_->restore(state);
 }
 

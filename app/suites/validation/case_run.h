@@ -56,7 +56,7 @@ class CaseRun {
   Parameters parameters() const { return simulator_->parameters(); }
   void set_parameters(const Parameters& parameters) { simulator_->set_parameters(parameters); }
 
-  std::vector<Vec3d> positions() const { return simulator_->snapshot().positions; }
+  std::vector<Vec3d> positions() const { return simulator_->snapshot().x1; }
   /// Sets another state at the same time; velocities may be empty for none.
   void set_state(const std::vector<Vec3d>& positions, const std::vector<Vec3d>& velocities);
 

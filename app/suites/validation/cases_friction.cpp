@@ -95,8 +95,8 @@ Motion motion(CaseRun& run) {
   Motion sum;
   double total = 0;
   for (std::size_t i = 0; i < mass.size(); ++i) {
-    sum.place += mass[i] * state.positions[i].x;
-    sum.speed += mass[i] * state.velocities[i].x;
+    sum.place += mass[i] * state.x1[i].x;
+    sum.speed += mass[i] * state.v[i].x;
     total += mass[i];
   }
   return {sum.place / total, sum.speed / total};
@@ -189,7 +189,7 @@ void stopping(CaseRun& run, Ground ground) {
     const double start = motion(run).place;
     Snapshot state = run.simulator().snapshot();
     const std::size_t count = run.simulator().scene().cloths[0].mesh.positions.size();
-    for (std::size_t i = 0; i < count; ++i) state.velocities[i].x += speed;
+    for (std::size_t i = 0; i < count; ++i) state.v[i].x += speed;
     run.simulator().restore(state);
 
     // Backward Euler applies the friction of a step to the velocity before the displacement.

@@ -35,7 +35,7 @@ double measured_frequency(CaseRun& run, const Cloth& cloth,
     const Snapshot state = run.simulator().snapshot();
     Complex sum;
     for (std::size_t i = 0; i < mass.size(); ++i)
-      sum += mass[i] * shape(i) * Complex(state.positions[i].z, state.velocities[i].z / expected);
+      sum += mass[i] * shape(i) * Complex(state.x1[i].z, state.v[i].z / expected);
     return sum;
   };
 

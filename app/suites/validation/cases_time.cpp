@@ -68,8 +68,8 @@ void follow(CaseRun& run, const Tip& tip, const char* what, Vec3d direction, dou
 
   // Displacement and velocity are the parts of z.
   const Snapshot state = run.simulator().snapshot();
-  const Complex z(dot(state.positions[0] - rest, direction) / displacement,
-                  dot(state.velocities[0], direction) / (omega * displacement));
+  const Complex z(dot(state.x1[0] - rest, direction) / displacement,
+                  dot(state.v[0], direction) / (omega * displacement));
 
   // The product of all steps has a known size and argument.
   const double dt = scene->parameters.step.time_step, turned = count * std::atan(omega * dt);
@@ -158,8 +158,8 @@ void free_fall(CaseRun& run) {
   const Vec3d displacement = t * thrown + (0.5 * t * (t + dt)) * g, speed = thrown + t * g;
   double position_error = 0, speed_error = 0;
   for (std::size_t i = 0; i < start.size(); ++i) {
-    position_error = std::max(position_error, norm(state.positions[i] - start[i] - displacement));
-    speed_error = std::max(speed_error, norm(state.velocities[i] - speed));
+    position_error = std::max(position_error, norm(state.x1[i] - start[i] - displacement));
+    speed_error = std::max(speed_error, norm(state.v[i] - speed));
   }
   run.bound("position, of the way", position_error / norm(displacement), 1e-5);
   run.bound("velocity, of the speed", speed_error / norm(speed), 1e-5);
@@ -211,8 +211,8 @@ void momentum(CaseRun& run) {
 
     // Torques act about the end positions.
     for (std::size_t i = 0; i < mass.size(); ++i) {
-      const Vec3d change = mass[i] * (after.velocities[i] - before.velocities[i]);
-      const Vec3d arm = after.positions[i] - after.positions[0];
+      const Vec3d change = mass[i] * (after.v[i] - before.v[i]);
+      const Vec3d arm = after.x1[i] - after.x1[0];
       impulse += change;
       torque += cross(arm, change);
       size += norm(change);

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "tests/support/fake_simulator.h"
+#include "tests/support/small_scenes.h"
 
 namespace icloth {
 namespace {
@@ -49,17 +50,21 @@ InputEvent event(InputEvent::Kind kind, int handle, Vec3d target) {
 }
 
 /// What `icloth replay` does with a recording.
-std::uint64_t replay(const Recording& recording, FakeOptions options = {}) {
-  FakeSimulator simulator(options);
+std::uint64_t replay(const Recording& recording, Simulator& simulator) {
   for (const Recording::Step& s : recording.steps) {
     Parameters parameters = simulator.parameters();
     for (const auto& [name, value] : s.parameters) {
       set_parameter(parameters, *find_parameter(name), value);
     }
-    simulator.set_parameters(parameters);
+    if (!s.parameters.empty()) simulator.set_parameters(parameters);
     simulator.step(s.events);
   }
   return simulator.state_hash();
+}
+
+std::uint64_t replay(const Recording& recording, FakeOptions options = {}) {
+  FakeSimulator simulator(options);
+  return replay(recording, simulator);
 }
 
 std::unique_ptr<Session> make(FakeOptions options = {}, SessionOptions session = {}) {
@@ -160,7 +165,7 @@ TEST(session, goes_back_and_on_from_there) {
   session->step_back(4);
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
   EXPECT_EQ(session->state().step, 2);
-  EXPECT_TRUE(session->state().held.empty());
+  EXPECT_TRUE(session->state().handles.empty());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     EXPECT_EQ(session->state().positions[v], positions[v]);
   }
@@ -178,8 +183,8 @@ TEST(session, holds_parked_handles_through_a_step_back) {
   step(*session, 2);
   session->step_back();
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
-  ASSERT_EQ(session->state().held.size(), 1u);
-  EXPECT_EQ(session->state().held[0].handle, 3);
+  ASSERT_EQ(session->state().handles.size(), 1u);
+  EXPECT_EQ(session->state().handles[0].id, 3);
   step(*session, 2);
   EXPECT_EQ(session->state().handles.size(), 1u);
   session->stop();
@@ -314,7 +319,7 @@ TEST(session, plays_the_scene_s_own_grabs_only_when_asked) {
   session.set_scripted(true);
   step(session);
   ASSERT_EQ(session.state().handles.size(), 1u);
-  EXPECT_EQ(session.state().handles[0].handle, kFirstScriptedHandle);
+  EXPECT_EQ(session.state().handles[0].id, kFirstScriptedHandle);
   session.set_scripted(false);
   step(session);
   EXPECT_TRUE(session.state().handles.empty());
@@ -340,6 +345,128 @@ TEST(session, refuses_values_out_of_range_with_a_note) {
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
   EXPECT_NE(session->state().note.find("step.time_step"), std::string::npos);
   EXPECT_DOUBLE_EQ(session->state().parameters.step.time_step, 0.01);
+}
+
+// ---- with a real solver ------------------------------------------------------------------------
+
+/// Two sheets that start closer than the thickness, over a ball, and a hand of the scene's own.
+std::shared_ptr<const Scene> real_scene() {
+  auto scene = std::make_shared<Scene>();
+  scene->name = "test";
+  scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 120), {0.01, 0.112, 0.02}));
+  scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 120), {0, 0.1123, 0}));
+  scene->obstacles.push_back(testing::make_obstacle(make_sphere(0.1, 320), {}));
+  scene->parameters.implicit.integrator = Integrator::bdf2;
+  ScriptedGrab grab;
+  grab.vertex = 3;
+  grab.release = 10;
+  grab.path = {{0, {0.1, 0.2, 0}}, {1, {0.3, 0.4, 0.1}}};
+  scene->input.push_back(grab);
+  return scene;
+}
+
+std::unique_ptr<Session> make_real() {
+  return std::make_unique<Session>(make_simulator(Build::cpu32, real_scene()), SessionOptions{});
+}
+
+std::uint64_t replay_with_real(const Recording& recording) {
+  const auto simulator = make_simulator(Build::cpu32, real_scene());
+  return replay(recording, *simulator);
+}
+
+InputEvent grab_of_face(int handle, Index face, Vec3d target) {
+  InputEvent grab = event(InputEvent::Kind::grab, handle, target);
+  grab.face = face;
+  return grab;
+}
+
+void go_back(Session& session, std::size_t count) {
+  const std::uint64_t rewinds = session.state().rewinds + 1;
+  session.step_back(count);
+  ASSERT_TRUE(wait_until(session, [=](const auto& s) { return s.rewinds == rewinds; }));
+}
+
+TEST(Session, ReplaysToTheSameBitsAfterGoingBackWithHands) {
+  const auto session = make_real();
+  session->set_scripted(true);
+  step(*session, 3);
+  session->post(grab_of_face(1, 5, {0, 0.25, 0}));
+  step(*session, 4);
+  session->post(event(InputEvent::Kind::move, 1, {0.1, 0.3, 0}));
+  step(*session, 8);
+  go_back(*session, 6);
+  EXPECT_EQ(session->state().handles.size(), 2u);
+  session->post(event(InputEvent::Kind::move, 1, {-0.1, 0.3, 0}));
+  step(*session, 5);
+  session->set_scripted(false);
+  step(*session, 3);
+  go_back(*session, 6);
+  step(*session, 4);
+  EXPECT_EQ(session->state().handles.size(), 1u) << "the scene's own grabs are switched off";
+  session->stop();
+  EXPECT_EQ(session->recording().steps.size(), 15u);
+  EXPECT_EQ(replay_with_real(session->recording()), session->recording().final_hash);
+}
+
+/// Going back and making the same steps again is the same as never having gone back.
+TEST(Session, TheSameStepsAfterGoingBackEndInTheSameState) {
+  const auto straight = make_real(), detour = make_real();
+  for (const auto& session : {straight.get(), detour.get()}) {
+    session->post(grab_of_face(1, 5, {0, 0.25, 0}));
+    step(*session, 6);
+  }
+  step(*detour, 5);
+  go_back(*detour, 5);
+  for (const auto& session : {straight.get(), detour.get()}) {
+    step(*session, 8);
+    session->stop();
+  }
+  EXPECT_EQ(detour->recording().final_hash, straight->recording().final_hash);
+}
+
+TEST(Session, SettingsTriedBetweenTwoStepsLeaveNoTrace) {
+  const auto straight = make_real(), tried = make_real();
+  for (int k = 0; k < 12; ++k) {
+    tried->set("proximity.thickness", 0.004);
+    tried->set("proximity.thickness", straight->state().parameters.proximity.thickness);
+    step(*straight);
+    step(*tried);
+  }
+  straight->stop();
+  tried->stop();
+  EXPECT_EQ(tried->recording().final_hash, straight->recording().final_hash);
+  EXPECT_EQ(replay_with_real(tried->recording()), tried->recording().final_hash);
+}
+
+TEST(Session, ReplaysToTheSameBitsWhenSettingsChangedBeforeGoingBack) {
+  const auto session = make_real();
+  step(*session, 5);
+  session->set("proximity.thickness", 0.003);
+  step(*session, 5);
+  go_back(*session, 7);
+  session->set("proximity.thickness", 0.002);
+  step(*session, 2);
+  session->set("proximity.thickness", 0.003);
+  step(*session, 6);
+  session->stop();
+  EXPECT_EQ(replay_with_real(session->recording()), session->recording().final_hash);
+}
+
+TEST(Session, ReplaysToTheSameBitsAfterReset) {
+  const auto session = make_real();
+  session->post(grab_of_face(1, 5, {0, 0.25, 0}));
+  session->set("gravity.y", -8);
+  step(*session, 6);
+  const std::uint64_t rewinds = session->state().rewinds;
+  session->reset();
+  ASSERT_TRUE(wait_until(*session, [=](const auto& s) { return s.rewinds > rewinds; }));
+  EXPECT_TRUE(session->state().handles.empty());
+  step(*session, 4);
+  session->post(grab_of_face(2, 30, {0, 0.3, 0}));
+  step(*session, 6);
+  session->stop();
+  EXPECT_EQ(session->recording().steps.size(), 10u);
+  EXPECT_EQ(replay_with_real(session->recording()), session->recording().final_hash);
 }
 
 }  // namespace

@@ -203,12 +203,12 @@ TEST(drag, after_a_jump_in_time_only_held_handles_remain) {
   drag.pin(hit(0, 0, 0));
   drag.begin(ray(0, 0), hit(1, 0, 0));
   drag.take_events();
-  InputEvent held;
-  held.handle = 1;
+  HandleState held;
+  held.id = 1;
   held.face = 9;
   held.target = {5, 5, 5};
-  InputEvent scripted = held;
-  scripted.handle = 1000;
+  HandleState scripted = held;
+  scripted.id = kFirstScriptedHandle;
   drag.restore(std::vector{held, scripted});
   ASSERT_EQ(drag.handles().size(), 1u);
   EXPECT_EQ(drag.handles()[0].face, 9);
