@@ -149,8 +149,7 @@ void Solver::set_parameters(const Parameters& parameters) {
   upload_fabrics(mesh_, *scene_, parameters);
   if (mesh_.bends && parameters.material.bending == BendingModel::plate)
     upload_plates(mesh_, world_);
-  if (pattern_bends_ != mesh_.bends) implicit_.set_up(world_, mesh_.bends);
-  pattern_bends_ = mesh_.bends;
+  implicit_.match_pattern(world_, mesh_);
 
   // Pinned vertices get an infinite mass, as obstacles have.
   std::vector<Real> mass, inverse(static_cast<std::size_t>(mesh_.vertices), Real(0));
@@ -207,7 +206,7 @@ double Solver::zone_work(double dt) {
            CandidateVelocity{state_.candidate.view(), state_.x1.view(), state_.v.view(),
                              candidate_v_.view(), real(1 / dt)});
   const auto energy = [&](View<const Vec3r> x, View<const Vec3r> v) {
-    return figures_of(mesh_, parameters_, state_.mass.view(), x, v).energy();
+    return figures_of(implicit_.forces(), {mesh_, parameters_, x}, state_.mass.view(), v).energy();
   };
   return energy(state_.x1.view(), state_.v.view()) -
          energy(state_.candidate.view(), candidate_v_.view());
@@ -230,7 +229,8 @@ void Solver::save_start() {
   start_.copy_from(state_);
   work_ = 0;
   if (!energy_)
-    energy_ = figures_of(mesh_, parameters_, state_.mass.view(), state_.x1.view(), state_.v.view())
+    energy_ = figures_of(implicit_.forces(), {mesh_, parameters_, state_.x1.view()},
+                         state_.mass.view(), state_.v.view())
                   .energy();
 }
 

@@ -78,7 +78,6 @@ class Solver final : public Simulator {
 
   BroadPhase broad_phase_;
   Proximity proximity_;
-  std::optional<bool> pattern_bends_;  ///< what implicit_ was set up for
   Implicit implicit_;
   Ccd ccd_;
   ImpactZones impact_zones_;

@@ -161,7 +161,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     }
 
     // Energies and hash are those of the state that was reached, or kept.
-    const double energy = report_state(mesh_, state_, parameters_, report);
+    const double energy = report_state(implicit_.forces(), mesh_, state_, parameters_, report);
     if (report.accepted) report.energy_balance = energy - *energy_ - work_;
     energy_ = energy;
     report.state_hash = hash_state(state_);

@@ -2,82 +2,10 @@
 
 #include <cstring>
 
-#include "kernels/bending.h"
 #include "kernels/parallel/parallel.h"
-#include "kernels/strain_limit.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
-
-struct FaceEnergy {
-  double energy, strain;
-};
-struct CombineFaces {
-  ICLOTH_HD FaceEnergy operator()(FaceEnergy a, FaceEnergy b) const {
-    return {a.energy + b.energy, Max{}(a.strain, b.strain)};
-  }
-};
-
-struct MembraneEnergy {
-  View<const Int3> face;
-  View<const Topology::Inverse> inverse;
-  View<const Real> area;
-  View<const Index> face_fabric;
-  View<const Fabric> fabric;
-  View<const Vec3r> x;
-
-  ICLOTH_HD FaceEnergy operator()(Index i) const {
-    const Int3 f = face[i];
-    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
-    const Sym2 g = green_strain(face_frame(xs, inverse[i].m));
-    const Fabric& cloth = fabric[face_fabric[i]];
-    const Real density = membrane_energy(stiffness_at(cloth, g), g) + limit_energy(cloth, g);
-    return {static_cast<double>(area[i] * density),
-            static_cast<double>(std::sqrt(std::fmax(largest_stretch2(g), Real(0))) - 1)};
-  }
-};
-
-struct BendingEnergy {
-  View<const HingeRest> hinge;
-  View<const Fabric> fabric;
-  View<const Vec3r> x;
-
-  ICLOTH_HD double operator()(Index i) const {
-    const HingeRest& h = hinge[i];
-    const Real theta = hinge_angle_of(h, x).theta;
-    const Real k = hinge_stiffness(fabric[h.fabric0], fabric[h.fabric1], h, theta);
-    return 0.5 * static_cast<double>(k * (theta - h.angle) * (theta - h.angle));
-  }
-};
-
-/// Of the faces; an edge of more than two faces is left out.
-struct PlateEnergy {
-  View<const PlateRest> plate;
-  View<const HingeRest> hinge;
-  View<const Real> area;
-  View<const Index> face_fabric;
-  View<const Fabric> fabric;
-  View<const Vec3r> x;
-
-  ICLOTH_HD double operator()(Index i) const {
-    const PlateRest& p = plate[i];
-    Real angle[3];
-    plate_angles(p, hinge, x, angle);
-    const Sym2 c = plate_curvature(p, angle);
-    return static_cast<double>(area[i] * plate_energy(plate_moduli(fabric[face_fabric[i]], c), c));
-  }
-};
-
-double bending_energy(const Topology& mesh, const Parameters& parameters, View<const Vec3r> x) {
-  if (!mesh.bends) return 0;
-  if (parameters.material.bending == BendingModel::plate)
-    return reduce("statistics.bending", mesh.cloth_faces, 0.0,
-                  PlateEnergy{mesh.plate.view(), mesh.hinge.view(), mesh.face_area.view(),
-                              mesh.face_fabric.view(), mesh.fabric.view(), x},
-                  Sum{});
-  return reduce("statistics.bending", mesh.hinge_count, 0.0,
-                BendingEnergy{mesh.hinge.view(), mesh.fabric.view(), x}, Sum{});
-}
 
 struct VertexEnergy {
   double kinetic, potential, speed2;
@@ -142,26 +70,25 @@ struct CountInfinite {
 
 }  // namespace
 
-StateFigures figures_of(const Topology& mesh, const Parameters& parameters, View<const Real> mass,
-                        View<const Vec3r> x, View<const Vec3r> v) {
-  const FaceEnergy faces =
-      reduce("statistics.membrane", mesh.cloth_faces, FaceEnergy{0, 0},
-             MembraneEnergy{mesh.face.view(), mesh.face_inverse.view(), mesh.face_area.view(),
-                            mesh.face_fabric.view(), mesh.fabric.view(), x},
-             CombineFaces{});
-  const double bending = bending_energy(mesh, parameters, x);
-  const Vec3d gravity{parameters.gravity.x, parameters.gravity.y, parameters.gravity.z};
+StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
+                        View<const Vec3r> v) {
+  const ForceEnergy energy = forces.energy(shape);
+  const GravityParameters& g = shape.parameters.gravity;
   const VertexEnergy motion =
-      reduce("statistics.motion", mesh.cloth_vertices, VertexEnergy{0, 0, 0},
-             MotionEnergy{x, v, mass, gravity}, CombineVertices{});
-  return {motion.kinetic, faces.energy + bending, motion.potential, faces.strain,
-          std::sqrt(motion.speed2)};
+      reduce("statistics.motion", shape.mesh.cloth_vertices, VertexEnergy{0, 0, 0},
+             MotionEnergy{shape.x, v, mass, Vec3d{g.x, g.y, g.z}}, CombineVertices{});
+  return {.kinetic = motion.kinetic,
+          .elastic = energy.elastic,
+          .gravity = motion.potential,
+          .outer = energy.outer,
+          .strain = energy.strain,
+          .speed = std::sqrt(motion.speed2)};
 }
 
-double report_state(const Topology& mesh, const State& state, const Parameters& parameters,
-                    StepReport& report) {
+double report_state(const Forces& forces, const Topology& mesh, const State& state,
+                    const Parameters& parameters, StepReport& report) {
   const StateFigures figures =
-      figures_of(mesh, parameters, state.mass.view(), state.x1.view(), state.v.view());
+      figures_of(forces, {mesh, parameters, state.x1.view()}, state.mass.view(), state.v.view());
   report.kinetic_energy = figures.kinetic;
   report.elastic_energy = figures.elastic;
   report.gravity_energy = figures.gravity;

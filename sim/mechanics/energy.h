@@ -1,26 +1,28 @@
 // What a step reports about the state it ends in.
 #pragma once
 
-#include "sim/state/state.h"
+#include "sim/mechanics/forces.h"
 
 namespace icloth::ICLOTH_BUILD {
 
 /// Figures of a state of the cloth.
 struct StateFigures {
   double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
-  double strain = 0;                             ///< largest principal stretch − 1
-  double speed = 0;                              ///< largest [m/s]
+  double outer = 0;   ///< energy of other conservative forces from outside [J]
+  double strain = 0;  ///< largest principal stretch − 1
+  double speed = 0;   ///< largest [m/s]
 
-  double energy() const { return kinetic + elastic + gravity; }
+  double energy() const { return kinetic + elastic + gravity + outer; }
 };
 
-/// Of positions [m] and velocities [m/s] (≥ cloth_vertices).
-StateFigures figures_of(const Topology& mesh, const Parameters& parameters, View<const Real> mass,
-                        View<const Vec3r> x, View<const Vec3r> v);
+/// A state of the cloth: `shape` of `forces`, with masses [kg] and velocities [m/s]
+/// (≥ cloth_vertices).
+StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
+                        View<const Vec3r> v);
 
 /// Writes the figures of the state (x1, v) to the report; returns its energy [J].
-double report_state(const Topology& mesh, const State& state, const Parameters& parameters,
-                    StepReport& report);
+double report_state(const Forces& forces, const Topology& mesh, const State& state,
+                    const Parameters& parameters, StepReport& report);
 
 /// 64-bit hash of the bits of all positions and velocities; does not depend on the thread count.
 std::uint64_t hash_state(const State& state);

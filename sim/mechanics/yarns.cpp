@@ -57,9 +57,11 @@ bool bend_as_plates(const Topology& mesh, const Parameters& p) {
 }
 
 FaceDeformation deformation_of(const Topology& mesh, const Parameters& p, View<const Vec3r> x) {
-  return {mesh.face.view(), mesh.face_inverse.view(),
-          bend_as_plates(mesh, p) ? mesh.plate.view() : View<const PlateRest>{}, mesh.hinge.view(),
-          x};
+  return {.face = mesh.face.view(),
+          .inverse = mesh.face_inverse.view(),
+          .plate = bend_as_plates(mesh, p) ? mesh.plate.view() : View<const PlateRest>{},
+          .hinge = mesh.hinge.view(),
+          .x = x};
 }
 
 }  // namespace
@@ -74,18 +76,23 @@ void match_yarns(const Topology& mesh, const Parameters& parameters, State& stat
            ResetAnchors{deformation_of(mesh, parameters, state.x1.view()), state.yarns.view()});
 }
 
-void update_yarn_anchors(const Topology& mesh, const Parameters& parameters, State& state) {
+void YarnFriction::begin_substep(const Topology& mesh, const Parameters& parameters, State& state) {
   state.yarns_start.resize(state.yarns.size());
   for_each("implicit.update_anchors", state.yarns.size(),
            UpdateAnchors{deformation_of(mesh, parameters, state.x0.view()), state.yarns.view(),
                          state.yarns_start.view()});
 }
 
-double yarn_work(const Topology& mesh, const Parameters& parameters, const State& state) {
+double YarnFriction::work(const ForceContext& c, View<const Vec3r>) const {
+  const Topology& mesh = c.mesh;
+  const State& state = c.state;
   return reduce("implicit.yarn_work", state.yarns.size(), 0.0,
-                YarnWork{deformation_of(mesh, parameters, state.candidate.view()),
-                         mesh.face_area.view(), mesh.face_fabric.view(), mesh.fabric.view(),
-                         state.yarns.view(), state.yarns_start.view()},
+                YarnWork{.end = deformation_of(mesh, c.parameters, state.candidate.view()),
+                         .area = mesh.face_area.view(),
+                         .face_fabric = mesh.face_fabric.view(),
+                         .fabric = mesh.fabric.view(),
+                         .anchor = state.yarns.view(),
+                         .start = state.yarns_start.view()},
                 Sum{});
 }
 

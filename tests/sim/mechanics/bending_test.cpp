@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-#include "sim/mechanics/plate_terms.h"
+#include "sim/mechanics/bending_terms.h"
 #include "sim/mechanics/plates.h"
 #include "tests/sim/files/mesh_layouts.h"
 
@@ -307,13 +307,17 @@ std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>&
                                    std::vector<Vec3r> v = {},
                                    const std::vector<YarnAnchor>& yarns = {}) {
   v.resize(x.size());
-  std::vector<Vec3r> ahead;
-  for (const Vec3r& u : v) ahead.push_back(dt * u);
+  std::vector<Vec3r> predicted;
+  for (const Vec3r& u : v) predicted.push_back(dt * u);
   const Index count = static_cast<Index>(x.size()),
               hinges = static_cast<Index>(sheet.hinges.size());
   const Index faces = static_cast<Index>(sheet.plates.size());
   const View<const Vec3r> here(x.data(), count);
-  const Linearization point{here, here, {ahead.data(), count}, {v.data(), count}, dt};
+  const Linearization point{.start = here,
+                            .at = here,
+                            .predicted = {predicted.data(), count},
+                            .v = {v.data(), count},
+                            .dt = dt};
   const std::vector<Index> fabric_of(sheet.plates.size());
   std::vector<HingeSlots> slots(sheet.hinges.size(), HingeSlots{{-1, -1}});
   for (Index f = 0; f < faces; ++f)
@@ -326,21 +330,31 @@ std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>&
   const View<const HingeRest> rest(sheet.hinges.data(), hinges);
   const View<const Fabric> fabric(&sheet.fabric, 1);
   const View<HingeTerm> term(terms.data(), hinges);
-  for (Index h = 0; h < hinges; ++h) HingeAngles{rest, fabric, point, term, 0}(h);
-  for (Index f = 0; f < faces; ++f)
-    PlateTerms{{sheet.plates.data(), faces},
-               rest,
-               {sheet.world.face_area.data(), faces},
-               {fabric_of.data(), faces},
-               fabric,
-               point,
-               {terms.data(), hinges},
-               {plate_term.data(), faces},
-               0,
-               {yarns.data(), static_cast<Index>(yarns.size())}}(f);
-  for (Index h = 0; h < hinges; ++h)
-    GatherPlates{
-        {slots.data(), hinges}, {plate_term.data(), faces}, rest, fabric, point, term, 0}(h);
+  std::vector<HingeMotion> motions(sheet.hinges.size());
+  const View<HingeMotion> motion(motions.data(), hinges);
+  const HingeBending single{
+      .hinge = rest, .fabric = fabric, .point = point, .term = term, .extra_damping = 0};
+  const HingeAngles angles{.hinge = rest,
+                           .fabric = fabric,
+                           .point = point,
+                           .motion = motion,
+                           .term = term,
+                           .extra_damping = 0};
+  const PlatePass pass{.plate = {sheet.plates.data(), faces},
+                       .hinge = rest,
+                       .area = {sheet.world.face_area.data(), faces},
+                       .face_fabric = {fabric_of.data(), faces},
+                       .fabric = fabric,
+                       .point = point,
+                       .motion = motion,
+                       .hinge_term = term,
+                       .term = {plate_term.data(), faces},
+                       .extra_damping = 0,
+                       .friction = {{yarns.data(), static_cast<Index>(yarns.size())}}};
+  const GatherPlates gather{{slots.data(), hinges}, {plate_term.data(), faces}, single};
+  for (Index h = 0; h < hinges; ++h) angles(h);
+  for (Index f = 0; f < faces; ++f) pass(f);
+  for (Index h = 0; h < hinges; ++h) gather(h);
   return terms;
 }
 
@@ -348,7 +362,7 @@ std::vector<Vec3r> impulses(const Sheet& sheet, const std::vector<HingeTerm>& te
   std::vector<Vec3r> sum(sheet.world.rest.size());
   for (std::size_t h = 0; h < terms.size(); ++h)
     for (int a = 0; a < 4; ++a)
-      sum[at(sheet.hinges[h].v.v[a])] += terms[h].s * terms[h].gradient[a];
+      sum[at(sheet.hinges[h].v.v[a])] += terms[h].impulse * terms[h].gradient[a];
   return sum;
 }
 
@@ -442,7 +456,7 @@ TEST(Plate, DampingLeavesTheFrictionOfYarnsAlone) {
       }
     double largest = 0;
     for (std::size_t h = 0; h < most.size(); ++h) {
-      const double share = std::fabs(with[h].s - without[h].s) / most[h];
+      const double share = std::fabs(with[h].impulse - without[h].impulse) / most[h];
       EXPECT_LE(share, 1 + 1e-9) << h;
       largest = std::max(largest, share);
     }

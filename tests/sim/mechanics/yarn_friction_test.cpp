@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "sim/mechanics/elastic_terms.h"
+#include "sim/mechanics/membrane.h"
 
 namespace icloth::cpu64 {
 namespace {
@@ -157,8 +157,8 @@ TEST(YarnFriction, DampingLeavesTheShearForceAlone) {
   // A half of a unit square, sheared fast: corners feel area · HG times the gradient of 2 G_uv.
   const std::vector<Vec3r> x{{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}, v{{0, 0, 0}, {0, 0, -3}, {3, 0, 0}};
   const Real dt = 0.01;
-  std::vector<Vec3r> ahead;
-  for (const Vec3r& u : v) ahead.push_back(dt * u);
+  std::vector<Vec3r> predicted;
+  for (const Vec3r& u : v) predicted.push_back(dt * u);
   const Int3 face{{0, 1, 2}};
   const Topology::Inverse inverse{{1, 0, 0, 1}};
   const Real area = 0.5;
@@ -169,11 +169,23 @@ TEST(YarnFriction, DampingLeavesTheShearForceAlone) {
     fabric.damping = damping;
     FaceTerm term;
     const View<const Vec3r> here(x.data(), 3);
-    const Linearization point{here, here, {ahead.data(), 3}, {v.data(), 3}, dt};
+    const Linearization point{.start = here,
+                              .at = here,
+                              .predicted = {predicted.data(), 3},
+                              .v = {v.data(), 3},
+                              .dt = dt};
     const View<const YarnAnchor> yarns =
         rubs ? View<const YarnAnchor>(&anchor, 1) : View<const YarnAnchor>{};
-    MembraneTerms{{&face, 1}, {&inverse, 1}, {&area, 1}, {&first, 1},    {&fabric, 1},
-                  point,      {&term, 1},    0,          Wind{{}, 0, 0}, yarns}(0);
+    const auto shares =
+        bundle_of(MembraneShare{.point = point, .extra_damping = 0, .friction = {yarns}});
+    FacePass<std::decay_t<decltype(shares)>>{.face = {&face, 1},
+                                             .inverse = {&inverse, 1},
+                                             .area = {&area, 1},
+                                             .face_fabric = {&first, 1},
+                                             .fabric = {&fabric, 1},
+                                             .point = point,
+                                             .term = {&term, 1},
+                                             .shares = shares}(0);
     return term.impulse[1];
   };
   for (const Real damping : {0.0, 2.0}) {

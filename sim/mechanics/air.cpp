@@ -1,0 +1,47 @@
+#include "sim/mechanics/air.h"
+
+#include "kernels/parallel/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+/// Work of the air on one face [J].
+struct AirWork {
+  View<const Int3> face;
+  View<const Real> inverse_mass;
+  View<const Vec3r> at, v, dv, x0, x1;
+  Wind wind;
+
+  ICLOTH_HD double operator()(Index i) const {
+    Vec3r xs[3], vs[3];
+    for (int a = 0; a < 3; ++a) {
+      xs[a] = at[face[i].v[a]];
+      vs[a] = v[face[i].v[a]];
+    }
+    const AirForce air = air_force(wind, xs, vs);
+    double work = 0;
+    for (const Index k : face[i].v) {
+      if (inverse_mass[k] > 0) work += dot_double(air.force - air.slope * dv[k], x1[k] - x0[k]);
+    }
+    return work;
+  }
+};
+
+}  // namespace
+
+double Air::work(const ForceContext& c, View<const Vec3r> dv) const {
+  const Wind wind = wind_of(c.parameters);
+  if (!wind.blows()) return 0;
+  return reduce("implicit.air_work", c.mesh.cloth_faces, 0.0,
+                AirWork{.face = c.mesh.face.view(),
+                        .inverse_mass = c.state.inverse_mass.view(),
+                        .at = c.point.at,
+                        .v = c.point.v,
+                        .dv = dv,
+                        .x0 = c.state.x0.view(),
+                        .x1 = c.state.candidate.view(),
+                        .wind = wind},
+                Sum{});
+}
+
+}  // namespace icloth::ICLOTH_BUILD

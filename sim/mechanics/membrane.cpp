@@ -1,0 +1,53 @@
+#include "sim/mechanics/membrane.h"
+
+#include "kernels/parallel/parallel.h"
+
+namespace icloth::ICLOTH_BUILD {
+namespace {
+
+struct FaceEnergy {
+  double energy, strain;
+};
+
+struct CombineFaces {
+  ICLOTH_HD FaceEnergy operator()(FaceEnergy a, FaceEnergy b) const {
+    return {a.energy + b.energy, Max{}(a.strain, b.strain)};
+  }
+};
+
+struct MembraneEnergy {
+  View<const Int3> face;
+  View<const Topology::Inverse> inverse;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const Vec3r> x;
+
+  ICLOTH_HD FaceEnergy operator()(Index i) const {
+    const Int3 f = face[i];
+    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
+    const Sym2 g = green_strain(face_frame(xs, inverse[i].m));
+    const Fabric& cloth = fabric[face_fabric[i]];
+    const Real density = membrane_energy(stiffness_at(cloth, g), g) + limit_energy(cloth, g);
+    return {static_cast<double>(area[i] * density),
+            static_cast<double>(std::sqrt(std::fmax(largest_stretch2(g), Real(0))) - 1)};
+  }
+};
+
+}  // namespace
+
+void Membrane::add_energy(const EnergyContext& c, ForceEnergy& energy) const {
+  const Topology& mesh = c.mesh;
+  const FaceEnergy faces = reduce("statistics.membrane", mesh.cloth_faces, FaceEnergy{0, 0},
+                                  MembraneEnergy{.face = mesh.face.view(),
+                                                 .inverse = mesh.face_inverse.view(),
+                                                 .area = mesh.face_area.view(),
+                                                 .face_fabric = mesh.face_fabric.view(),
+                                                 .fabric = mesh.fabric.view(),
+                                                 .x = c.x},
+                                  CombineFaces{});
+  energy.elastic += faces.energy;
+  energy.strain = Max{}(energy.strain, faces.strain);
+}
+
+}  // namespace icloth::ICLOTH_BUILD
