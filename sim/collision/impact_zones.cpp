@@ -130,6 +130,8 @@ void ImpactZones::label_zones(const SubstepContext& step) {
   for_each("impact_zones.corners", n,
            FreeCorners{kept_.view(), step.state.inverse_mass.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);
+
+  // Vertices with a constraint are active; the corners name them by their slots from here on.
   compact("impact_zones.active", vertices, HasEntries{incidence_.first()}, unsorted_active_);
   const Index active = unsorted_active_.size();
   slot_of_.resize(vertices);
@@ -140,6 +142,9 @@ void ImpactZones::label_zones(const SubstepContext& step) {
            NumberSlots{unsorted_active_.view(), slot_of_.view(), label_.view()});
   for_each("impact_zones.slots", n, ToSlots{slot_of_.view(), slots_.view()});
   incidence_.build(slots_.view(), active);
+
+  // Each constraint takes the smallest label of its vertices, and each vertex that of its
+  // constraints, until all vertices of a zone have the label of its smallest slot.
   for (bool changed = true; changed;) {
     for_each("impact_zones.labels", n,
              ConstraintLabels{slots_.view(), label_.view(), constraint_label_.view()});
@@ -154,6 +159,8 @@ void ImpactZones::label_zones(const SubstepContext& step) {
 void ImpactZones::order_by_zone(const SubstepContext& step) {
   const Index n = kept_.size(), active = unsorted_active_.size();
   const State& s = step.state;
+
+  // Sorts vertices or constraints by the label of their zone; writes where each zone begins.
   const auto sort_by_label = [&](const Array<Index>& label, Array<Index>& order,
                                  Array<Index>& first) {
     const Index count = label.size();
@@ -168,20 +175,34 @@ void ImpactZones::order_by_zone(const SubstepContext& step) {
   sort_by_label(label_, vertex_order_, vertex_first_);
   sort_by_label(constraint_label_, kept_of_, constraint_first_);
 
+  // Vertices and constraints are loaded in the order of their zones.
   for (Array<Vec3r>* a : {&target_, &x_, &before_, &direction_}) a->resize(active);
   mass_.resize(active);
-  for (Array<Real>* a : {&multiplier_, &shortfall_, &trial_, &scale_}) a->resize(n);
+  for (Array<Real>* a : {&multiplier_, &shortfall_, &scratch1_, &scratch2_}) a->resize(n);
   active_.resize(active);
   new_slot_.resize(active);
   constraints_.resize(n);
   zone_slots_.resize(n);
   for_each("impact_zones.load", active,
-           LoadVertices{vertex_order_.view(), unsorted_active_.view(), s.x1.view(),
-                        s.candidate.view(), s.mass.view(), active_.view(), new_slot_.view(),
-                        target_.view(), x_.view(), before_.view(), mass_.view()});
+           LoadVertices{.order = vertex_order_.view(),
+                        .old_active = unsorted_active_.view(),
+                        .x1 = s.x1.view(),
+                        .candidate = s.candidate.view(),
+                        .vertex_mass = s.mass.view(),
+                        .active = active_.view(),
+                        .new_slot = new_slot_.view(),
+                        .target = target_.view(),
+                        .x = x_.view(),
+                        .before = before_.view(),
+                        .mass = mass_.view()});
   for_each("impact_zones.load", n,
-           LoadConstraints{kept_of_.view(), new_slot_.view(), kept_.view(), slots_.view(),
-                           constraints_.view(), zone_slots_.view(), multiplier_.view()});
+           LoadConstraints{.order = kept_of_.view(),
+                           .new_slot = new_slot_.view(),
+                           .kept = kept_.view(),
+                           .slots = slots_.view(),
+                           .constraints = constraints_.view(),
+                           .zone_slots = zone_slots_.view(),
+                           .multiplier = multiplier_.view()});
   incidence_.build(zone_slots_.view(), active);
 }
 
@@ -198,30 +219,41 @@ void ImpactZones::solve_zones(const SolveZone<Solver>& solve) {
 
 void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
   State& s = step.state;
-  const Parameters& p = step.parameters;
+  const ImpactZoneParameters& p = step.parameters.impact_zones;
   corrected_ = true;
+
+  // The impacts of this round join the kept constraints; those connected by vertices make a zone.
   merge(impacts);
   label_zones(step);
   order_by_zone(step);
-  const Index zones = vertex_first_.size() - 1;
-  results_.resize(zones);
-  const ZoneSettings settings{step.offset(),
-                              Real(0.2) * step.offset(),
-                              p.impact_zones.iterations,
-                              static_cast<Real>(p.impact_zones.penalty),
-                              static_cast<Real>(p.impact_zones.rho),
-                              static_cast<Real>(p.impact_zones.step_threshold),
-                              p.impact_zones.chebyshev};
-  const ZoneArrays arrays{constraints_.view(),  constraint_first_.view(),
-                          vertex_first_.view(), incidence_.first(),
-                          incidence_.entries(), target_.view(),
-                          mass_.view(),         s.x1.view(),
-                          s.x0.view(),          x_.view(),
-                          before_.view(),       direction_.view(),
-                          multiplier_.view(),   shortfall_.view(),
-                          trial_.view(),        scale_.view(),
-                          results_.view()};
-  switch (p.impact_zones.solver) {
+
+  // Every zone is solved on its own.
+  results_.resize(vertex_first_.size() - 1);
+  const ZoneSettings settings{.offset = step.offset(),
+                              .tolerance = Real(0.2) * step.offset(),
+                              .iterations = p.iterations,
+                              .penalty = static_cast<Real>(p.penalty),
+                              .rho = static_cast<Real>(p.rho),
+                              .step_threshold = static_cast<Real>(p.step_threshold),
+                              .chebyshev = p.chebyshev};
+  const ZoneArrays arrays{.constraints = constraints_.view(),
+                          .constraint_first = constraint_first_.view(),
+                          .vertex_first = vertex_first_.view(),
+                          .incidence_first = incidence_.first(),
+                          .incidence = incidence_.entries(),
+                          .target = target_.view(),
+                          .mass = mass_.view(),
+                          .fixed = s.x1.view(),
+                          .start = s.x0.view(),
+                          .x = x_.view(),
+                          .before = before_.view(),
+                          .direction = direction_.view(),
+                          .multiplier = multiplier_.view(),
+                          .shortfall = shortfall_.view(),
+                          .scratch1 = scratch1_.view(),
+                          .scratch2 = scratch2_.view(),
+                          .result = results_.view()};
+  switch (p.solver) {
     case ZoneSolver::augmented_lagrangian:
       solve_zones(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
       break;
@@ -233,6 +265,7 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
       break;
   }
 
+  // The next round looks at the vertices that moved; idle constraints are dropped.
   store(step);
   drop_idle();
   report(step.report, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
@@ -246,8 +279,14 @@ void ImpactZones::store(SubstepContext& step) {
   dirty_.resize(step.mesh.cloth_vertices);
   dirty_.fill(0);
   for_each("impact_zones.store", active_.size(),
-           StoreVertices{active_.view(), incidence_.first(), incidence_.entries(), kept_of_.view(),
-                         x_.view(), kept_.view(), s.x1.view(), dirty_.view()});
+           StoreVertices{.active = active_.view(),
+                         .first = incidence_.first(),
+                         .entries = incidence_.entries(),
+                         .kept_of = kept_of_.view(),
+                         .x = x_.view(),
+                         .kept = kept_.view(),
+                         .x1 = s.x1.view(),
+                         .dirty = dirty_.view()});
   for_each("impact_zones.store", constraints_.size(),
            StoreConstraints{kept_of_.view(), multiplier_.view(), shortfall_.view(), step.offset(),
                             kept_.view()});

@@ -64,7 +64,7 @@ class ImpactZones {
   Array<ZoneConstraint> constraints_;             ///< by zone, order_by_zone
   Array<Int4> zone_slots_;
   Array<Vec3r> target_, x_, before_, direction_;  ///< see ZoneArrays
-  Array<Real> mass_, multiplier_, shortfall_, trial_, scale_;
+  Array<Real> mass_, multiplier_, shortfall_, scratch1_, scratch2_;
   Array<ZoneResult> results_;
   Array<std::uint8_t> dirty_;
   Real largest_correction_ = 0;

@@ -272,20 +272,21 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Real h = step.thickness();
-  const ContactMaker maker{s.x0.view(),
-                           s.v.view(),
-                           mesh.rest.view(),
-                           s.inverse_mass.view(),
-                           mesh.object.view(),
-                           mesh.cloth_vertices,
-                           h,
-                           static_cast<Real>(0.25) * mesh.median_edge,
-                           h + static_cast<Real>(0.5) * mesh.median_edge,
-                           step.dt,
-                           step.dt * step.gravity(),
-                           static_cast<Real>(step.parameters.proximity.friction_cloth),
-                           static_cast<Real>(step.parameters.proximity.friction_obstacle),
-                           mesh.object_friction.view()};
+  const ProximityParameters& p = step.parameters.proximity;
+  const ContactMaker maker{.x = s.x0.view(),
+                           .v = s.v.view(),
+                           .rest = mesh.rest.view(),
+                           .inverse_mass = s.inverse_mass.view(),
+                           .object = mesh.object.view(),
+                           .cloth_vertices = mesh.cloth_vertices,
+                           .thickness = h,
+                           .slack = static_cast<Real>(0.25) * mesh.median_edge,
+                           .reach = h + static_cast<Real>(0.5) * mesh.median_edge,
+                           .dt = step.dt,
+                           .fall_speed = step.dt * step.gravity(),
+                           .friction_cloth = static_cast<Real>(p.friction_cloth),
+                           .friction_obstacle = static_cast<Real>(p.friction_obstacle),
+                           .own_friction = mesh.object_friction.view()};
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
