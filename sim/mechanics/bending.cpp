@@ -49,6 +49,8 @@ void Bending::lay_out(const World& world, const Topology& mesh, PatternBuilder& 
 void Bending::prepare(const ForceContext& c) {
   const Topology& mesh = c.mesh;
   if (!mesh.bends) return;
+
+  // Single hinges are a pass of their own, or the last one for the hinges that no plate knows.
   terms_.resize(mesh.hinge_count);
   const HingeBending single{.hinge = mesh.hinge.view(),
                             .fabric = mesh.fabric.view(),
@@ -65,6 +67,8 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
   const Topology& mesh = c.mesh;
   motions_.resize(mesh.hinge_count);
   plates_.resize(mesh.cloth_faces);
+
+  // Angles of the hinges → torques of the faces on them → sums of both faces.
   for_each("implicit.angles", mesh.hinge_count,
            HingeAngles{.hinge = single.hinge,
                        .fabric = single.fabric,

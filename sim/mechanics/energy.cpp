@@ -73,6 +73,7 @@ struct CountInfinite {
 StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
                         View<const Vec3r> v) {
   const ForceEnergy energy = forces.energy(shape);
+
   const GravityParameters& g = shape.parameters.gravity;
   const VertexEnergy motion =
       reduce("statistics.motion", shape.mesh.cloth_vertices, VertexEnergy{0, 0, 0},

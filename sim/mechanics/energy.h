@@ -1,4 +1,4 @@
-// What a step reports about the state it ends in.
+// Energies, largest strain and speed, and hash of a state: what a step reports about its end.
 #pragma once
 
 #include "sim/mechanics/forces.h"

@@ -24,6 +24,7 @@ void add_strain_limit(Fabric& f, const Material& material, const Parameters& p) 
 }
 
 Fabric make_fabric(const Material& material, const Parameters& p) {
+  // The measured tables, scaled.
   Fabric f{};
   for (std::size_t row = 0; row < 6; ++row)
     for (std::size_t c = 0; c < 4; ++c)
@@ -31,6 +32,7 @@ Fabric make_fabric(const Material& material, const Parameters& p) {
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t c = 0; c < 5; ++c)
       f.bending[row][c] = real(p.material.bend_scale * material.bending[row][c]);
+
   f.damping = real(material.damping);
   f.measured = material.law == Material::Law::measured;
   f.bending_spacing = real(material.bending_spacing);
@@ -55,9 +57,12 @@ bool has_yarn_friction(const Fabric& f) { return f.bending_friction > 0 || f.she
 }  // namespace
 
 void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parameters) {
+  // One fabric a cloth.
   std::vector<Fabric> fabrics;
   for (const Cloth& cloth : scene.cloths)
     fabrics.push_back(make_fabric(cloth.material, parameters));
+
+  // On request the stiffness of measured fabrics is read from a table.
   const bool tables = parameters.material.evaluation == MaterialEvaluation::table;
   mesh.stiffness_table.resize(tables ? StiffnessTable::kSize * static_cast<Index>(fabrics.size())
                                      : 0);
@@ -69,6 +74,7 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
              FillStiffnessTable{fabrics[i], View<Stiffness>(first, StiffnessTable::kSize)});
     fabrics[i].table = first;
   }
+
   mesh.fabric.upload(fabrics);
   mesh.bends = std::ranges::any_of(fabrics, bends);
   mesh.has_yarn_friction = std::ranges::any_of(fabrics, has_yarn_friction);
@@ -76,6 +82,8 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
 
 void upload_plates(Topology& mesh, const World& world) {
   if (mesh.plate.size() == mesh.cloth_faces) return;
+
+  // Each hinge is told which slots of its two faces it has; edges of more than two faces have none.
   std::vector<PlateRest> plates;
   std::vector<HingeSlots> slots(world.hinges.size(), HingeSlots{{-1, -1}});
   for (const FacePlate& plate : make_plates(world)) {
@@ -89,6 +97,7 @@ void upload_plates(Topology& mesh, const World& world) {
     }
     plates.push_back(rest);
   }
+
   mesh.plate.upload(plates);
   mesh.hinge_slots.upload(slots);
 }

@@ -79,10 +79,13 @@ Matrix inverse(const Matrix& m) {
   return out;
 }
 
-/// H with the smallest H:H of which the rows of the hinges that there are give the angles; the
-/// inverse of m where all three are there.
+/// W with the smallest H:H among the curvatures H that give the angles of the hinges that exist.
+/// Where all three exist it is the inverse of m.
 Matrix curvature_from_angles(const Matrix& m, const std::array<Index, 3>& hinge) {
   constexpr double kInverseWeight[3] = {1, 1, 0.5};  // H:H = H_uu² + H_vv² + 2 H_uv²
+
+  // Least squares with Q the inverse weights: W = Q mᵀ (m Q mᵀ)⁻¹ over the rows of those hinges.
+  // The rows of missing hinges are those of the identity, so that the matrix can be inverted.
   Matrix gram{};
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 3; ++b) {
@@ -93,6 +96,7 @@ Matrix curvature_from_angles(const Matrix& m, const std::array<Index, 3>& hinge)
       for (std::size_t k = 0; k < 3; ++k) gram[a][b] += m[a][k] * kInverseWeight[k] * m[b][k];
     }
   const Matrix solve = inverse(gram);
+
   Matrix w{};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t b = 0; b < 3; ++b)
@@ -116,14 +120,18 @@ double gain2(const Matrix& middle, const Matrix& w) {
 /// W of a face from the angles of quadratics on its three edges.
 std::array<double, 9> plate_operator(const std::array<FlatEdge, 3>& edges, double area,
                                      const Matrix& exact, const FacePlate& plate) {
+  // The mid-edge operator, from the edges of the face alone.
   Matrix middle_w;
   for (std::size_t a = 0; a < 3; ++a) {
     const Vec2d n = edges[a].outward;
     const double scale = edges[a].length / (2 * area);
-    middle_w[0][a] = scale * n.x * n.x, middle_w[1][a] = scale * n.y * n.y,
+    middle_w[0][a] = scale * n.x * n.x;
+    middle_w[1][a] = scale * n.y * n.y;
     middle_w[2][a] = scale * n.x * n.y;
   }
   const Matrix middle = inverse(middle_w);
+
+  // Mixed with the exact one, with the smallest share that does not amplify single angles.
   Matrix w{};
   for (const double share : kShares) {
     Matrix m;
@@ -133,12 +141,13 @@ std::array<double, 9> plate_operator(const std::array<FlatEdge, 3>& edges, doubl
     w = curvature_from_angles(m, plate.hinge);
     if (gain2(middle, w) <= kLargestGain * kLargestGain) break;
   }
+
   std::array<double, 9> out;
   for (std::size_t i = 0; i < 9; ++i) out[i] = w[i / 3][i % 3];
   return out;
 }
 
-/// What one face knows of one of its edges.
+/// One edge of a face and the face on its other side.
 struct Side {
   Index hinge = -1;
   double sign = 1;
@@ -158,6 +167,8 @@ std::vector<FacePlate> make_plates(const World& world) {
     const std::array<Vec2d, 3> p = corners(world.face_inverse[f]);
     for (std::size_t a = 0; a < 3; ++a) edges[f][a] = flat_edge(p, a);
   }
+
+  // Each hinge tells both of its faces where the third corner of the other one is at rest.
   std::vector<std::array<Side, 3>> sides(faces);
   for (std::size_t h = 0; h < world.hinges.size(); ++h) {
     const Hinge& hinge = world.hinges[h];
@@ -166,15 +177,20 @@ std::vector<FacePlate> make_plates(const World& world) {
     const Triangle &t0 = world.face[f0], &t1 = world.face[f1];
     const std::size_t a0 = corner_of(t0, hinge.vertices[0]);
     const std::size_t opposite = corner_of(t1, hinge.vertices[3]), a1 = (opposite + 1) % 3;
+
     // Neighbours that are oriented alike run along their edge in opposite directions.
     const bool alike = t1[a1] != t0[a0];
     const FlatEdge &e0 = edges[f0][a0], &e1 = edges[f1][a1];
+
+    // The places of the third corners, seen from the start of this face's edge.
     const auto seen = [&](const FlatEdge& e) {
       return Flap{alike ? e.length - e.own.along : e.own.along, e.own.height};
     };
     sides[f0][a0] = {static_cast<Index>(h), 1.0, seen(e1)};
     sides[f1][a1] = {static_cast<Index>(h), alike ? 1.0 : -1.0, seen(e0)};
   }
+
+  // The operator of each face takes the angles of its hinges with the sign of its own side.
   std::vector<FacePlate> plates(faces);
   for (std::size_t f = 0; f < faces; ++f) {
     Matrix exact{};
@@ -186,6 +202,7 @@ std::vector<FacePlate> make_plates(const World& world) {
     plates[f].w = plate_operator(edges[f], world.face_area[f], exact, plates[f]);
     for (std::size_t i = 0; i < 9; ++i) plates[f].w[i] *= sides[f][i % 3].sign;
   }
+
   return plates;
 }
 
