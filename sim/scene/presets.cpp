@@ -1,9 +1,13 @@
 #include "sim/scene/presets.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <exception>
 #include <string>
 
+#include "sim/files/assets.h"
 #include "sim/files/error.h"
+#include "sim/files/json_reader.h"
 
 namespace icloth {
 namespace {
@@ -23,23 +27,38 @@ constexpr Preset::Setting kAccurate[] = {{"step.time_step", "0.0025"},
                                          {"implicit.newton_iterations", "5"}};
 
 constexpr Preset kPresets[] = {
-    {"fast", "Fast", kFast,
-     "For looking: 1.3 (flag) to 2.1 times (sphere) as fast as the built-in scenes' own settings. "
-     "Vertices are 33 mm (flag) and 15 mm (sphere) from a reference with a step of 1/1600 s, "
-     "energies 20 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
-    {"normal", "Normal", kNormal,
-     "1.0 (flag) to 1.4 times (sphere) as fast as the built-in scenes' own settings, and nearer "
-     "to a reference with a step of 1/1600 s: vertices are 22 mm (flag) and 6 mm (sphere) away, "
-     "energies 13 and 7 %. With the scenes' own settings: 27 and 9 mm, 13 and 18 %."},
-    {"accurate", "Accurate", kAccurate,
-     "For measuring: a third (flag) to a half (sphere) as fast as the built-in scenes' own "
-     "settings. Vertices are 6 mm (flag) and 2 mm (sphere) from a reference with a step of "
-     "1/1600 s, energies 2 %; with the scenes' own settings 27 and 9 mm, 13 and 18 %."},
+    {"fast", "Fast", kFast, "For looking: larger steps, solved less exactly."},
+    {"normal", "Normal", kNormal, "Nearer to the exact motion than the defaults, about as fast."},
+    {"accurate", "Accurate", kAccurate, "For measuring: small steps of second order."},
 };
+
+/// One measured point of a scene.
+std::string line_of(const nlohmann::json& point, const nlohmann::json& own) {
+  char text[160];
+  std::snprintf(
+      text, sizeof text, "%.16s: %.3g times as fast, %.3g mm off (own settings %.3g mm)\n",
+      point.at("scene").get<std::string>().c_str(), point.at("times_faster").get<double>(),
+      point.at("position_mm").get<double>(), own.at("position_mm").get<double>());
+  return text;
+}
 
 }  // namespace
 
 std::span<const Preset> presets() { return kPresets; }
+
+std::string measured_results(const Preset& preset) {
+  try {
+    const nlohmann::json file = read_json(assets_folder() + "/results/presets.json");
+    const nlohmann::json& points = file.at("presets").at(std::string(preset.name));
+    const nlohmann::json& own = file.at("presets").at("as in the scene");
+
+    std::string text;
+    for (std::size_t k = 0; k < points.size(); ++k) text += line_of(points.at(k), own.at(k));
+    return text + "(" + file.at("source").get<std::string>() + ")";
+  } catch (const std::exception&) {
+    return "";  // A program without its results works; it has nothing to show here.
+  }
+}
 
 const Preset& find_preset(std::string_view name) {
   std::string names;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,11 +17,16 @@ struct Preset {
   std::string_view name;   ///< "fast"
   std::string_view label;  ///< "Fast"
   std::span<const Setting> settings;
-  std::string_view figures;  ///< what was measured, a few lines
+  std::string_view purpose;  ///< a sentence
 };
 
 /// From the fastest to the most accurate; all set the same parameters.
 std::span<const Preset> presets();
+
+/// What `icloth bench accuracy` measured for a preset, one line a scene, and where: read from
+/// assets/results/presets.json, which docs/make_tables.py makes from the recorded results. Empty
+/// where that file is missing or cannot be read.
+std::string measured_results(const Preset& preset);
 
 /// Throws InputError that names the presets.
 const Preset& find_preset(std::string_view name);

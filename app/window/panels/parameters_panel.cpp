@@ -1,6 +1,9 @@
 // The panel of parameters. Its sliders are made from the table of parameters, which gives unit,
 // range, scale and tooltips.
 #include <cstdio>
+#include <map>
+#include <string>
+#include <string_view>
 
 #include "app/window/panels/hover.h"
 #include "app/window/panels/panel.h"
@@ -155,7 +158,12 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
 
 void explain_preset(const Preset& preset) {
   over_item([&] {
-    ImGui::TextUnformatted(shown(std::string(preset.figures)).c_str());
+    ImGui::TextUnformatted(shown(std::string(preset.purpose)).c_str());
+    // The file of results does not change while the program runs; it is read when first shown.
+    static std::map<std::string_view, std::string> results;
+    const auto [found, is_new] = results.try_emplace(preset.name);
+    if (is_new) found->second = measured_results(preset);
+    if (!found->second.empty()) ImGui::TextUnformatted(shown(found->second).c_str());
     for (const auto& [key, value] : preset.settings)
       ImGui::TextDisabled("%s = %s", std::string(key).c_str(), std::string(value).c_str());
   });

@@ -86,7 +86,10 @@ TEST(Presets, AllSetTheSameParametersWithinTheirRanges) {
     Parameters parameters;
     apply_preset(parameters, preset);
     EXPECT_TRUE(is_set(parameters, preset));
-    EXPECT_FALSE(preset.figures.empty());
+    EXPECT_FALSE(preset.purpose.empty());
+    const std::string results = measured_results(preset);
+    EXPECT_NE(results.find("sphere: "), std::string::npos) << results;
+    EXPECT_NE(results.find("commit"), std::string::npos) << results;
     ASSERT_EQ(preset.settings.size(), presets()[0].settings.size());
     for (std::size_t k = 0; k < preset.settings.size(); ++k)
       EXPECT_EQ(preset.settings[k].first, presets()[0].settings[k].first);
