@@ -11,4 +11,5 @@ else
   install_missing "${build_packages[@]}" "${test_packages[@]}"
 fi
 build all
+say "Step 3 of 3: running the tests"
 exec ctest --test-dir "$root/build" --output-on-failure --parallel "$(nproc)" "$@"

@@ -31,10 +31,44 @@ install_missing() {
     fi
     as_root=(sudo)
   fi
-  say "Installing ${missing[*]}"
+  say "Step 1 of 3: installing ${#missing[@]} packages: ${missing[*]}"
   quietly "${as_root[@]}" apt-get -q update
-  quietly "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get -q install -y --no-install-recommends "${missing[@]}"
+  install_with_progress "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q install -y --no-install-recommends -o APT::Status-Fd=3 "${missing[@]}"
+}
+
+# install_with_progress COMMAND… : says how far apt is, which it writes to file descriptor 3 as
+# "dlstatus:…:PERCENT:…" and "pmstatus:…:PERCENT:…". Shows what it printed only when it fails.
+install_with_progress() {
+  local log status=0
+  log=$(mktemp)
+  { "$@" 3>&1 > "$log" 2>&1 < /dev/null || printf '%s\n' "$?" > "$log.status"; } |
+    while IFS=: read -r kind _ percent _; do
+      local what=installed
+      [[ $kind != dlstatus ]] || what=downloaded
+      [[ $kind != [dp][lm]status ]] || show_share "$what" "${percent%%.*}" 100 "% of the packages"
+    done
+  [[ ! -e $log.status ]] || status=$(< "$log.status")
+  ((status == 0)) || cat "$log" >&2
+  rm -f "$log" "$log.status"
+  return "$status"
+}
+
+# show_share WHAT DONE ALL UNIT : one line that is overwritten on a terminal; elsewhere a line each
+# quarter of the way.
+last_share=""
+show_share() {
+  local what=$1 done=$2 all=$3 unit=$4
+  [[ $done =~ ^[0-9]+$ ]] && ((all > 0)) || return 0
+  if [[ -t 2 ]]; then
+    printf '\r\033[K  %s %s%s' "$what" "$done" "$unit" >&2
+    ((done < all)) || printf '\n' >&2
+  else
+    local share="$what $((4 * done / all))"
+    [[ $share != "$last_share" ]] || return 0
+    last_share=$share
+    say "  $what $done$unit"
+  fi
 }
 
 # quietly COMMAND… : shows what it printed only when it fails.
@@ -49,15 +83,26 @@ quietly() {
 
 # build TARGET… : configures $root/build (Release) and builds. $ICLOTH_CMAKE_FLAGS are added.
 build() {
-  local flags=() generator=()
+  local flags=() generator=() log status=0
   read -r -a flags <<< "${ICLOTH_CMAKE_FLAGS:-}"
   [[ -e $root/build/CMakeCache.txt ]] || ! command -v ninja > /dev/null || generator=(-G Ninja)
+  say "Step 2 of 3: building $*"
   quietly cmake -S "$root" -B "$root/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
     "${flags[@]}"
-  if [[ -t 2 ]]; then
-    cmake --build "$root/build" --parallel "$(nproc)" --target "$@" >&2
-  else
-    say "Building $* (the first time takes some minutes)"
-    quietly cmake --build "$root/build" --parallel "$(nproc)" --target "$@"
-  fi
+
+  # ninja's lines begin with [DONE/ALL], make's with [PERCENT%].
+  log=$(mktemp)
+  { cmake --build "$root/build" --parallel "$(nproc)" --target "$@" 2>&1 ||
+      printf '%s\n' "$?" > "$log.status"; } | tee "$log" |
+    while IFS= read -r line; do
+      if [[ $line =~ ^\[\ *([0-9]+)/([0-9]+)\] ]]; then
+        show_share compiled "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" " of ${BASH_REMATCH[2]} files"
+      elif [[ $line =~ ^\[\ *([0-9]+)%\] ]]; then
+        show_share compiled "${BASH_REMATCH[1]}" 100 " %"
+      fi
+    done
+  [[ ! -e $log.status ]] || status=$(< "$log.status")
+  ((status == 0)) || grep -v '^\[' "$log" >&2 || true
+  rm -f "$log" "$log.status"
+  return "$status"
 }
