@@ -405,7 +405,7 @@ TEST_P(Builds, AGrabbedSheetFollowsTheHandUntilReleased) {
   }
   for (int k = 0; k < 20; ++k) simulator->step({});
   const HandleState held = simulator->handles().at(0);
-  EXPECT_EQ(held.handle, 7);
+  EXPECT_EQ(held.id, 7);
   EXPECT_LT(norm(held.hit - held.target), 0.01);
   EXPECT_GT(mean_position(*simulator, vertices).x, 0.15);
 
