@@ -22,11 +22,12 @@
 #include "sim/mechanics/bending.h"
 #include "sim/mechanics/hand_springs.h"
 #include "sim/mechanics/membrane.h"
+#include "sim/mechanics/pressure.h"
 #include "sim/mechanics/yarns.h"
 
 namespace icloth::ICLOTH_BUILD {
 
-using ForceList = std::tuple<Membrane, Air, Bending, HandSprings, YarnFriction>;
+using ForceList = std::tuple<Membrane, Air, Bending, HandSprings, YarnFriction, Pressure>;
 
 /// One object of each force.
 class Forces {

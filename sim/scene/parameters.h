@@ -40,6 +40,7 @@ struct MaterialParameters {
   double density_scale = 1.0;
   double damping = 0.0;
   double strain_limit = 0.0;
+  double pressure = 0.0;
   BendingModel bending = BendingModel::plate;
   MaterialEvaluation evaluation = MaterialEvaluation::direct;
 };

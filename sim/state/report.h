@@ -45,10 +45,10 @@ struct StepReport {
   /// |Σ b − AΔv| / (dt Σ m) over the free vertices, of the last solve of a substep and the largest
   /// of all substeps: the force per mass that CG, where it stopped, makes or loses [m/s²].
   double momentum_error = 0;
-  /// Kinetic, elastic and gravity energy after the step, less those before it, less the work done
-  /// on the cloth in it by air, hands, contacts (repulsion and friction, as the linear terms
-  /// applied them), yarn friction (what it gives back included) and impact zones (all
-  /// that they changed in those energies) [J]. Negative: what
+  /// Kinetic, elastic, gravity and pressure energy after the step, less those before it, less the
+  /// work done on the cloth in it by air, hands, contacts (repulsion and friction, as the linear
+  /// terms applied them), yarn friction (what it gives back included) and impact zones (all that
+  /// they changed in those energies) [J]. Negative: what
   /// damping, of the fabric and of the integrator, took away; positive: made from nothing, an
   /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
   /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.

@@ -1,0 +1,118 @@
+// The force of a gas inside closed cloth whose pressure does not depend on the volume, as in a
+// balloon: p · area · normal on every face of a closed surface. It is the gradient of p V, with V
+// the volume inside, so its sum over a closed surface is zero and so is that of its torques.
+//
+// The force is that of the shape of the linearisation; its derivative, which is not definite, is
+// left out of the matrix. Newton's method makes up for it.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "kernels/parallel/parallel.h"
+#include "sim/mechanics/force.h"
+
+namespace icloth::ICLOTH_BUILD {
+
+/// Which way out is: 1 for the cloth faces of a closed surface with outward normals, −1 for those
+/// of one with inward normals, 0 for faces of open surfaces. A surface, connected over edges, is
+/// closed where two faces meet at each edge and run along it in opposite directions.
+inline std::vector<Real> outward_sides(const World& world) {
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  std::vector<Index> parent(at(world.cloth_faces));
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto surface_of = [&](Index f) {
+    while (parent[at(f)] != f) f = parent[at(f)] = parent[at(parent[at(f)])];
+    return f;
+  };
+
+  // The sides of all faces, with those along the same edge next to each other.
+  struct Side {
+    Index low, high, face;
+    bool forward;
+  };
+  std::vector<Side> sides;
+  for (Index f = 0; f < world.cloth_faces; ++f)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Index from = world.face[at(f)][a], to = world.face[at(f)][(a + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), f, from < to});
+    }
+  const auto edge = [](const Side& s) { return std::pair(s.low, s.high); };
+  std::ranges::sort(sides, {}, edge);
+
+  // Faces that meet at an edge belong to one surface; `open` marks where one is not closed.
+  std::vector<bool> open(parent.size());
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i;
+    for (; end < sides.size() && edge(sides[end]) == edge(sides[i]); ++end)
+      parent[at(surface_of(sides[end].face))] = surface_of(sides[i].face);
+    if (end - i != 2 || sides[i].forward == sides[i + 1].forward) open[at(sides[i].face)] = true;
+    i = end;
+  }
+
+  // The sign of the volume says which way the normals of a closed surface point.
+  std::vector<double> volume(parent.size());
+  std::vector<bool> surface_open(parent.size());
+  for (Index f = 0; f < world.cloth_faces; ++f) {
+    const Triangle& t = world.face[at(f)];
+    const Vec3d a = world.position[at(t[0])], b = world.position[at(t[1])];
+    volume[at(surface_of(f))] += dot(a, cross(b, world.position[at(t[2])]));
+    if (open[at(f)]) surface_open[at(surface_of(f))] = true;
+  }
+  std::vector<Real> outward;
+  for (Index f = 0; f < world.cloth_faces; ++f) {
+    const std::size_t surface = at(surface_of(f));
+    outward.push_back(surface_open[surface] ? Real(0) : Real(volume[surface] < 0 ? -1 : 1));
+  }
+  return outward;
+}
+
+struct PressureShare {
+  View<const Real> outward;  ///< see outward_sides (cloth_faces)
+  Real pressure;             ///< [Pa]
+  Real dt;                   ///< [s]
+
+  ICLOTH_HD void add(const FaceShape& f, FaceTerm& t) const {
+    if (pressure == 0 || outward[f.index] == 0) return;
+    const Vec3r twice_area = outward[f.index] * cross(f.at[1] - f.at[0], f.at[2] - f.at[0]);
+    const Vec3r impulse = (dt * pressure / 6) * twice_area;
+    for (int a = 0; a < 3; ++a) t.impulse[a] += impulse;
+  }
+};
+
+/// Share of one face in the volume inside [m³].
+struct EnclosedVolume {
+  View<const Int3> face;
+  View<const Real> outward;
+  View<const Vec3r> x;
+
+  ICLOTH_HD double operator()(Index i) const {
+    const Int3 f = face[i];
+    const Vec3d a = convert<double>(x[f.v[0]]), b = convert<double>(x[f.v[1]]);
+    return static_cast<double>(outward[i]) * dot(a, cross(b, convert<double>(x[f.v[2]]))) / 6;
+  }
+};
+
+class Pressure : public Force {
+ public:
+  void lay_out(const World& world, const Topology&, PatternBuilder&) {
+    outward_.upload(outward_sides(world));
+  }
+  PressureShare face_share(const ForceContext& c) const {
+    return {outward_.view(), static_cast<Real>(c.parameters.material.pressure), c.point.dt};
+  }
+  /// −p V.
+  void add_energy(const EnergyContext& c, ForceEnergy& energy) const {
+    const double pressure = c.parameters.material.pressure;
+    if (pressure == 0) return;
+    energy.outer -=
+        pressure * reduce("statistics.volume", c.mesh.cloth_faces, 0.0,
+                          EnclosedVolume{c.mesh.face.view(), outward_.view(), c.x}, Sum{});
+  }
+
+ private:
+  Array<Real> outward_;  ///< (cloth_faces), lay_out
+};
+
+}  // namespace icloth::ICLOTH_BUILD
