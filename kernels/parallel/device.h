@@ -9,6 +9,7 @@
 #if defined(__CUDACC__)
 #include "kernels/parallel/cuda_check.h"
 #include "kernels/parallel/device_problem.h"
+#include "kernels/parallel/launch.h"
 #endif
 
 namespace icloth::ICLOTH_BUILD {
@@ -58,7 +59,7 @@ inline cudaError_t probe() {
   int value = 0;
   cudaError_t error = cudaMalloc(&out, sizeof value);
   if (error != cudaSuccess) return error;
-  probe_kernel<><<<1, 1>>>(out);  // fails where no code for this capability was built
+  ICLOTH_LAUNCH(probe_kernel<>, 1, 1)(out);  // fails where no code for this capability was built
   error = cudaGetLastError();
   if (error == cudaSuccess) error = cudaMemcpy(&value, out, sizeof value, cudaMemcpyDeviceToHost);
   if (error == cudaSuccess && value != kProbe) error = cudaErrorUnknown;

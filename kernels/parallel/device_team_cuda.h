@@ -110,11 +110,10 @@ void with_device_team(const char* name, Index n, const F& f) {
   F copy = f;
   void* arguments[] = {&copy, &partial, &half};
   const unsigned blocks = std::min(tiles, detail::resident_blocks<F>(name));
-  // CUDA 12 does not take the name of a template here.
+  // CUDA 12 does not take the name of a template in the call.
   void (*const kernel)(F, unsigned char*, std::size_t) = detail::device_team_kernel<F>;
-  ICLOTH_CUDA_CHECK(name,
-                    cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks),
-                                                dim3(detail::kThreads), arguments, 0, nullptr));
+  ICLOTH_CUDA_CHECK(name, cudaLaunchCooperativeKernel(kernel, dim3(blocks), dim3(detail::kThreads),
+                                                      arguments, 0, nullptr));
   detail::check_launch(name);
 }
 

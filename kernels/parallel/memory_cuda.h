@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "kernels/parallel/cuda_check.h"
+#include "kernels/parallel/launch.h"
 
 namespace icloth::ICLOTH_BUILD::memory {
 
@@ -37,7 +38,7 @@ template <class T>
 void fill(T* array, Index n, T value) {
   constexpr int kThreads = 256;
   const unsigned blocks = (static_cast<unsigned>(n) + kThreads - 1) / kThreads;
-  fill_kernel<<<blocks, kThreads>>>(array, n, value);
+  ICLOTH_LAUNCH(fill_kernel, blocks, kThreads)(array, n, value);
   ICLOTH_CUDA_CHECK("fill array", cudaGetLastError());
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "kernels/parallel/cuda_check.h"
+#include "kernels/parallel/launch.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace detail {
@@ -84,8 +85,7 @@ __global__ void __launch_bounds__(Team::kThreads) team_kernel(const F f) {
 /// Combines one value of each thread of the block in a fixed order; every thread gets the result.
 template <class T, class Op>
 __device__ T combine_in_block(T value, const Op& op) {
-  // Raw bytes: shared variables must not have constructors.
-  __shared__ alignas(16) unsigned char storage[kThreads * sizeof(T)];
+  ICLOTH_SHARED(storage, kThreads * sizeof(T));
   T* const shared = reinterpret_cast<T*>(storage);
   const auto me = static_cast<int>(threadIdx.x);
   shared[me] = value;
@@ -120,7 +120,8 @@ __global__ void __launch_bounds__(kThreads)
     value = op(value, static_cast<T>(f(static_cast<Index>(i))));
   }
   value = combine_in_block(value, op);
-  __shared__ bool is_last;
+  ICLOTH_SHARED(flag, sizeof(bool));
+  bool& is_last = *reinterpret_cast<bool*>(flag);
   if (me == 0) {
     partial[blockIdx.x] = value;
     __threadfence();  // the partial result is seen by whoever sees the ticket
@@ -197,8 +198,9 @@ T reduce_on_device(const char* name, Index n, T identity, const F& f, const Op& 
   const unsigned tiles = block_count(n, tile);
   const View<T> partial = scratch<T, 1>(static_cast<Index>(tiles));
   const Mailbox& mailbox = Mailbox::mine();
-  reduce_kernel<<<tiles, kThreads>>>(n, tile, identity, f, op, partial.data(), mailbox.ticket(),
-                                     static_cast<T*>(mailbox.on_device()));
+  ICLOTH_LAUNCH(reduce_kernel, tiles, kThreads)
+  (n, tile, identity, f, op, partial.data(), mailbox.ticket(),
+   static_cast<T*>(mailbox.on_device()));
   check_launch(name);
   return mailbox.read<T>(name);
 }
@@ -263,7 +265,7 @@ struct WriteEmitted {
 template <class F>
 void launch(const char* name, Index n, const F& f, int threads = kThreads) {
   if (n <= 0) return;
-  for_each_kernel<<<block_count(n, threads), static_cast<unsigned>(threads)>>>(n, f);
+  ICLOTH_LAUNCH(for_each_kernel, block_count(n, threads), static_cast<unsigned>(threads))(n, f);
   check_launch(name);
 }
 
@@ -344,7 +346,9 @@ template <class F>
 void for_each_team(const char* name, Index teams, const F& f) {
   const detail::CudaScope scope(name);
   if (teams <= 0) return;
-  detail::team_kernel<<<static_cast<unsigned>(teams), Team::kThreads, Team::kSharedBytes>>>(f);
+  ICLOTH_LAUNCH(detail::team_kernel, static_cast<unsigned>(teams), Team::kThreads,
+                Team::kSharedBytes)
+  (f);
   detail::check_launch(name);
 }
 

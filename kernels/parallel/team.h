@@ -10,6 +10,10 @@
 #include "kernels/parallel/array.h"
 #include "kernels/parallel/platform.h"
 
+#if defined(__CUDACC__)
+#include "kernels/parallel/launch.h"
+#endif
+
 namespace icloth::ICLOTH_BUILD {
 
 class Team {
@@ -71,7 +75,7 @@ class Team {
   template <class T>
   ICLOTH_HD View<T> borrow(View<T> view) {
 #if defined(__CUDA_ARCH__)
-    extern __shared__ __align__(16) unsigned char shared_memory[];
+    ICLOTH_SHARED_OF_LAUNCH(shared_memory);
     const std::size_t bytes = (static_cast<std::size_t>(view.size()) * sizeof(T) + 15) / 16 * 16;
     if (bytes > kSharedBytes - borrowed_) return view;
     auto* const copy = reinterpret_cast<std::remove_const_t<T>*>(shared_memory + borrowed_);
@@ -97,8 +101,7 @@ class Team {
 #if defined(__CUDA_ARCH__)
   template <class T, class Op>
   __device__ static T combine(T value, const Op& op) {
-    // Raw bytes: shared variables must not have constructors.
-    __shared__ alignas(16) unsigned char storage[kThreads * sizeof(T)];
+    ICLOTH_SHARED(storage, kThreads * sizeof(T));
     T* shared = reinterpret_cast<T*>(storage);
     const int me = static_cast<int>(threadIdx.x);
     shared[me] = value;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "kernels/device_positions_cuda.h"
+#include "kernels/parallel/launch.h"
 #include "render/cuda_vertices.h"
 #include "render/gl_context.h"
 
@@ -171,7 +172,7 @@ std::string CudaWriter::pack(const DevicePositions& from) {
                        cudaStreamWaitEvent(stream_, static_cast<cudaEvent_t>(from.written), 0));
   if (!failure.empty()) return failure;
   const unsigned blocks = (static_cast<unsigned>(vertices_) + kThreads - 1) / kThreads;
-  if (blocks > 0) pack_kernel<<<blocks, kThreads, 0, stream_>>>(vertices_, pack);
+  if (blocks > 0) ICLOTH_LAUNCH(pack_kernel, blocks, kThreads, 0, stream_)(vertices_, pack);
   failure = failure_of("packing the vertices", cudaGetLastError());
   if (!failure.empty()) return failure;
 
