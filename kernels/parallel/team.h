@@ -99,10 +99,17 @@ class Team {
   std::size_t borrowed_ = 0;
 
 #if defined(__CUDA_ARCH__)
+  /// What the threads pass each other in `combine`. One array for all types: with one for each type
+  /// a solver that reduces several of them would not leave room for what the team borrows.
+  __device__ static unsigned char* reduce_storage() {
+    ICLOTH_SHARED(storage, kThreads * kMaxReduceBytes);
+    return storage;
+  }
+
   template <class T, class Op>
   __device__ static T combine(T value, const Op& op) {
-    ICLOTH_SHARED(storage, kThreads * sizeof(T));
-    T* shared = reinterpret_cast<T*>(storage);
+    static_assert(alignof(T) <= 16);
+    T* shared = reinterpret_cast<T*>(reduce_storage());
     const int me = static_cast<int>(threadIdx.x);
     shared[me] = value;
     for (int half = kThreads / 2; half > 0; half /= 2) {
