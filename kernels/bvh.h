@@ -58,7 +58,7 @@ ICLOTH_HD inline void set_child(TreeNode& node, int child, const Box& box) {
 struct TreeView {
   View<const TreeNode> nodes;  ///< all levels, the lowest first
   View<const Index> items;     ///< element of each leaf, in Morton order
-  Index level_first[kTreeLevels];
+  Index level_first[kTreeLevels] = {};
   int levels = 0;  ///< 0: empty tree
 };
 
