@@ -6,6 +6,7 @@
 #include "kernels/copy_to_device.h"
 #include "kernels/parallel/device.h"
 #include "kernels/parallel/parallel.h"
+#include "kernels/parallel/reserve.h"
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/fabrics.h"
 
@@ -127,6 +128,27 @@ Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
   state_.v.resize(mesh_.vertices);
   state_.v.fill(Vec3r{});
   set_parameters(scene_->parameters);
+  reserve_memory();
+}
+
+/// Lists of pairs grow when cloth touches something, and no step should wait for their memory.
+void Solver::reserve_memory() {
+  constexpr std::uint64_t kCandidatesPerVertex = 32;
+  constexpr std::uint64_t kBytesPerCandidate = 160;
+  constexpr std::uint64_t kLeast = std::uint64_t{4} << 20;  // what sorts and reductions take
+  const auto vertices = static_cast<std::uint64_t>(mesh_.vertices);
+  memory::reserve(kLeast + kCandidatesPerVertex * kBytesPerCandidate * vertices);
+  reserved_ = memory::reserved();
+}
+
+/// Where a step needed more than that, half as much again is taken, so that it stays a rare event.
+/// The profile notes it.
+void Solver::grow_reserve() {
+  const std::uint64_t needed = memory::reserved();
+  if (needed <= reserved_) return;
+  const ProfileScope note("memory.grow");
+  memory::reserve(needed / 2);
+  reserved_ = memory::reserved();
 }
 
 void Solver::use_device() const { select_device(device_); }

@@ -56,6 +56,8 @@ class Solver final : public Simulator {
   void back_to_substep_start();
   void save_start();
   void back_to_start();
+  void reserve_memory();
+  void grow_reserve();
   std::vector<Vec3d> cloth_positions() const;
   std::vector<Vec3d> watched_positions() const;  ///< of the vertices that hands_ watches
 
@@ -70,6 +72,8 @@ class Solver final : public Simulator {
   Array<Spring> springs_;                  ///< of the hands, use_hands
   mutable Array<Index> watched_;           ///< vertices that hands_ watches, watched_positions
   mutable Array<Vec3r> watched_position_;  ///< their positions [m], watched_positions
+  /// Device memory that the pool had when it was last looked at [bytes], grow_reserve.
+  std::uint64_t reserved_ = 0;
   double free_mass_ = 0;  ///< of the vertices that are not pinned [kg], set_parameters
   /// Of the state, where it is known [J], step. It follows from memory and parameters.
   std::optional<double> energy_;

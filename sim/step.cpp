@@ -165,6 +165,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     if (report.accepted) report.energy_balance = energy - *energy_ - work_;
     energy_ = energy;
     report.state_hash = hash_state(state_);
+    grow_reserve();
   });
 
   report.time = state_.time;

@@ -1,4 +1,8 @@
 // Where arrays live in the CUDA build: memory of the current device.
+//
+// It comes from the device's pool (cudaMallocAsync): memory that is given back stays there, behind
+// the work that still uses it, and the next array takes it without waiting for the device, which
+// cudaMalloc and cudaFree would do. Everything runs on the default stream, as the primitives do.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +12,29 @@
 
 namespace icloth::ICLOTH_BUILD::memory {
 
+/// Whether the device that is asked first has a pool; those of one program are taken to be alike.
+inline bool has_pool() {
+  static const bool answer = [] {
+    int device = 0, supported = 0;
+    const bool known =
+        cudaGetDevice(&device) == cudaSuccess &&
+        cudaDeviceGetAttribute(&supported, cudaDevAttrMemoryPoolsSupported, device) == cudaSuccess;
+    return known && supported != 0;
+  }();
+  return answer;
+}
+
 inline void* allocate(std::size_t bytes) {
   void* memory = nullptr;
-  ICLOTH_CUDA_CHECK("allocate array", cudaMalloc(&memory, bytes));
+  const cudaError_t error =
+      has_pool() ? cudaMallocAsync(&memory, bytes, nullptr) : cudaMalloc(&memory, bytes);
+  ICLOTH_CUDA_CHECK("allocate array", error);
   return memory;
 }
 /// Unchecked: it runs in destructors, at program exit even after the driver has shut down.
-inline void release(void* memory) noexcept { static_cast<void>(cudaFree(memory)); }
+inline void release(void* memory) noexcept {
+  static_cast<void>(has_pool() ? cudaFreeAsync(memory, nullptr) : cudaFree(memory));
+}
 
 inline void copy_to_host(void* host, const void* array, std::size_t bytes) {
   ICLOTH_CUDA_CHECK("download array", cudaMemcpy(host, array, bytes, cudaMemcpyDeviceToHost));
