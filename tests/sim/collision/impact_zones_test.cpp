@@ -11,58 +11,10 @@
 #include <numeric>
 
 #include "sim/simulator.h"
-#include "tests/support/stage_support.h"
+#include "tests/support/crossing.h"
 
 namespace icloth::cpu32 {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// Three pairs of sheets that pass through each other, and a sheet that falls into a ball.
-struct Crossing {
-  Stage stage;
-  BroadPhase broad_phase;
-  Ccd ccd;
-  ImpactZones zones;
-
-  static Scene scene(bool ball) {
-    Scene scene;
-    for (int pair = 0; pair < 3; ++pair) {
-      const Vec3d place{0.5 * pair, 0, 0};
-      scene.cloths.push_back(
-          testing::make_sheet(testing::lying(0.1 + 0.05 * pair, 60 + 60 * pair), place));
-      scene.cloths.push_back(
-          testing::make_sheet(testing::lying(0.12, 70), place + Vec3d{0.01, 0.004, 0.013}));
-    }
-    if (!ball) return scene;
-    scene.cloths.push_back(testing::make_sheet(testing::lying(0.2, 100), {0, 0.105, 1}));
-    scene.obstacles.push_back(testing::make_obstacle(make_sphere(0.1, 180), {0, 0, 1}));
-    return scene;
-  }
-
-  explicit Crossing(bool ball, Real speed = Real(0.004)) : stage(scene(ball)) {
-    std::mt19937 random(1);
-    stage.start = sum(stage.start, random_vectors(stage, random, Real(1e-3), false));
-    stage.state.x0.upload(stage.start);
-    std::vector<Vec3r> end = sum(stage.start, random_vectors(stage, random, Real(1e-3), false));
-    for (Index i = 0; i < stage.world.cloth_vertices; ++i) {
-      const bool upper = stage.world.object[at(i)] % 2 == 1;
-      end[at(i)].y += stage.world.object[at(i)] == 6 ? -2 * speed : (upper ? -speed : speed);
-    }
-    stage.set_end(end);
-    zones.begin_substep();
-  }
-
-  void find(bool incremental = false) {
-    SubstepContext step = stage.context();
-    broad_phase.cover_candidate(step);
-    ccd.find(step, broad_phase, zones.dirty(), incremental);
-  }
-  void solve() {
-    SubstepContext step = stage.context();
-    zones.solve(step, ccd.impacts());
-  }
-};
 
 /// Zone of every cloth vertex, by a serial union-find; −1 for those without an impact.
 std::vector<Index> union_find(const Stage& stage, const std::vector<Impact>& impacts) {
@@ -91,29 +43,10 @@ std::vector<Index> union_find(const Stage& stage, const std::vector<Impact>& imp
   return parent;
 }
 
-double gap(const Impact& impact, const std::vector<Vec3r>& x) {
-  Vec3d sum;
-  for (int a = 0; a < 4; ++a)
-    sum += static_cast<double>(impact.s.w[a]) * convert<double>(x[at(impact.s.v[a])]);
-  return dot(convert<double>(impact.normal), sum);
-}
-
 class ImpactZoneSolvers : public ::testing::TestWithParam<ZoneSolver> {};
 INSTANTIATE_TEST_SUITE_P(All, ImpactZoneSolvers,
                          ::testing::Values(ZoneSolver::augmented_lagrangian, ZoneSolver::dual,
                                            ZoneSolver::linear));
-
-TEST_P(ImpactZoneSolvers, OpenEveryConstraint) {
-  Crossing c(true);
-  c.stage.parameters.impact_zones.solver = GetParam();
-  c.find();
-  const std::vector<Impact> impacts = c.ccd.impacts().download();
-  ASSERT_GT(impacts.size(), 200u);
-  c.solve();
-  const std::vector<Vec3r> x1 = c.stage.state.x1.download();
-  for (const Impact& impact : impacts)
-    EXPECT_GE(gap(impact, x1), 0.79 * c.stage.parameters.impact_zones.offset);
-}
 
 TEST(ImpactZones, AreTheConnectedComponents) {
   Crossing c(true);
@@ -185,43 +118,17 @@ TEST_P(ImpactZoneSolvers, EndTheRoundsWithoutImpacts) {
   EXPECT_TRUE(c.ccd.impacts().empty());
 }
 
-/// Two large sheets that pass through each other everywhere: one zone, solved by all threads.
-std::vector<Vec3r> solve_large_zone(ZoneSolver solver, int threads, Index& largest,
-                                    double& smallest_gap) {
-  set_thread_count(threads);
-  Scene scene;
-  for (int sheet = 0; sheet < 2; ++sheet)
-    scene.cloths.push_back(testing::make_sheet(testing::lying(0.5, 2400), {0, 0.004 * sheet, 0}));
-  Stage stage(scene);
-  stage.parameters.impact_zones.solver = solver;
-  std::vector<Vec3r> end = stage.start;
-  for (Index i = 0; i < stage.world.cloth_vertices; ++i)
-    end[at(i)].y += stage.world.object[at(i)] == 1 ? Real(-0.004) : Real(0.004);
-  stage.set_end(end);
-  BroadPhase broad_phase;
-  Ccd ccd;
-  ImpactZones zones;
-  zones.begin_substep();
-  SubstepContext step = stage.context();
-  broad_phase.cover_candidate(step);
-  ccd.find(step, broad_phase, zones.dirty(), false);
-  zones.solve(step, ccd.impacts());
-  set_thread_count(0);
-  largest = static_cast<Index>(stage.report.largest_zone);
-  const std::vector<Vec3r> x1 = stage.state.x1.download();
-  smallest_gap = 1;
-  for (const Impact& impact : ccd.impacts().download())
-    smallest_gap = std::min(smallest_gap, gap(impact, x1) / stage.parameters.impact_zones.offset);
-  return x1;
-}
-
+/// Two large sheets are one zone, which all threads solve together.
 TEST_P(ImpactZoneSolvers, GiveLargeZonesToAllThreads) {
-  Index largest = 0;
-  double smallest_gap = 0;
-  const std::vector<Vec3r> one = solve_large_zone(GetParam(), 1, largest, smallest_gap);
-  EXPECT_GT(largest, kLargestTeamZone);
-  EXPECT_GE(smallest_gap, 0.79);
-  EXPECT_TRUE(one == solve_large_zone(GetParam(), 4, largest, smallest_gap));
+  const auto solve = [](int threads) {
+    set_thread_count(threads);
+    CrossingSheets sheets(GetParam());
+    sheets.solve();
+    set_thread_count(0);
+    EXPECT_GT(sheets.stage.report.largest_zone, kLargestTeamZone);
+    return sheets.stage.state.x1.download();
+  };
+  EXPECT_TRUE(solve(1) == solve(4));
 }
 
 std::vector<Vec3r> result_with_threads(ZoneSolver solver, int threads) {
