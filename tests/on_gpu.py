@@ -147,8 +147,15 @@ def report_tests(found):
             "slowest": [[t["name"], t["seconds"]] for t in slowest]}
 
 
+def sanitizer_runs():
+    """Names of the logs: each checker with each line of device_runs.txt."""
+    with open(os.path.join(os.path.dirname(__file__), "data", "device_runs.txt")) as lines:
+        runs = [line.split()[0] for line in lines if not line.startswith("#")]
+    return [f"{tool}_{run}" for tool in ("memcheck", "racecheck") for run in runs]
+
+
 def report_sanitizer(found):
-    for name in ("memcheck", "racecheck"):
+    for name in sanitizer_runs():
         step = found.step(name)
         if not step:
             continue

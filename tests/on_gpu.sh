@@ -157,14 +157,17 @@ stage_tests() {
     --output-junit "$work/tests.xml"
 }
 
-# A sheet flung onto a ball: all stages within six steps.
+# A sheet flung onto a ball: contacts, impact zones, retries and roll-back within a few steps each.
 stage_sanitizer() {
-  local sanitizer tool
+  local sanitizer tool name steps settings
   sanitizer=$(PATH=$PATH:/usr/local/cuda/bin:/usr/local/cuda/compute-sanitizer \
     command -v compute-sanitizer)
   for tool in memcheck racecheck; do
-    run "$tool" 100 "${sanitizer:-compute-sanitizer}" --tool "$tool" --error-exitcode 9 "$icloth" run \
-      "$root/tests/data/drop.json" --device cuda --steps 6 --set gravity.y=-100
+    while read -r name steps settings; do
+      # shellcheck disable=SC2086  # the settings are words
+      run "${tool}_$name" 100 "${sanitizer:-compute-sanitizer}" --tool "$tool" --error-exitcode 9 \
+        "$icloth" run "$root/tests/data/drop.json" --device cuda --steps "$steps" --set $settings
+    done < <(grep -v '^#' "$root/tests/data/device_runs.txt")
   done
 }
 
