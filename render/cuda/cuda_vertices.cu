@@ -298,7 +298,9 @@ bool gl_runs_on_cuda(int device, std::string& reason) {
 
   // OpenGL may draw on the processor, in which case CUDA need not be asked.
   reason = elsewhere(device, count);
+#if !defined(ICLOTH_CUDA_EMULATED)  // the emulated device draws wherever OpenGL does
   if (gl_is_software()) return false;
+#endif
 
   // CUDA lists the devices that the current context draws on. Where it cannot say, the probe
   // decides.
