@@ -15,13 +15,22 @@ struct MeshGroup {
   Index first_face = 0, face_count = 0;
 };
 
-struct MeshFile {
-  TriangleMesh mesh;
-  std::vector<MeshGroup> groups;  ///< at least one
+/// Face of a file with more than three corners.
+struct FilePolygon {
+  Index first_face = 0, face_count = 0;  ///< triangles that it was cut into
+  std::vector<Index> corners;            ///< its vertices in order
+  bool operator==(const FilePolygon&) const = default;
 };
 
-/// OBJ or PLY by extension; polygons are cut into fans. Throws InputError naming file, line and
-/// value: missing or truncated file, non-finite number, index out of range, no triangles.
+struct MeshFile {
+  TriangleMesh mesh;
+  std::vector<MeshGroup> groups;      ///< at least one
+  std::vector<FilePolygon> polygons;  ///< in the order of their triangles
+};
+
+/// OBJ or PLY by extension; polygons are cut into triangles (sim/files/polygon.h). Throws
+/// InputError naming file, line and value: missing or truncated file, non-finite number, index out
+/// of range, no triangles.
 MeshFile read_mesh(const std::string& path);
 
 /// Throws InputError naming the first zero-area face, vertex used by no face, or repeated index.

@@ -1,10 +1,12 @@
-// Wavefront OBJ: v, vt, f, g and o; everything else is skipped.
+// Wavefront OBJ: v, vt, f, g and o, over several lines where they end in a backslash; everything
+// else is skipped.
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
+#include "sim/files/polygon.h"
 
 namespace icloth {
 namespace {
@@ -19,10 +21,8 @@ class ObjParser {
 
   MeshFile parse() {
     while (!text_.empty()) {
-      const std::size_t end = std::min(text_.find('\n'), text_.size());
-      ++line_;
-      parse_line(text_.substr(0, end));
-      text_.remove_prefix(std::min(end + 1, text_.size()));
+      line_ = next_line_;
+      parse_line(next_statement());
     }
     close_group();
     if (!all_have_uv_) file_.mesh.uv.clear();
@@ -36,8 +36,42 @@ class ObjParser {
                      std::string(value.substr(0, 60)) + "', expected " + expected);
   }
 
-  void parse_line(std::string_view line) {
+  std::string_view next_physical_line() {
+    const std::size_t end = std::min(text_.find('\n'), text_.size());
+    const std::string_view line = text_.substr(0, end);
+    text_.remove_prefix(std::min(end + 1, text_.size()));
+    ++next_line_;
+    return line;
+  }
+
+  /// The next line without its comment, together with those that it goes on to: a backslash at the
+  /// end of a line stands for a blank.
+  std::string_view next_statement() {
+    std::string_view line = next_physical_line();
     line = line.substr(0, line.find('#'));
+    if (!take_backslash(line)) return line;
+    joined_ = line;
+    for (bool goes_on = true; goes_on && !text_.empty();) {
+      line = next_physical_line();
+      line = line.substr(0, line.find('#'));
+      goes_on = take_backslash(line);
+      joined_ += ' ';
+      joined_ += line;
+    }
+    return joined_;
+  }
+
+  /// Removes a backslash at the end of a line, which a carriage return may follow.
+  static bool take_backslash(std::string_view& line) {
+    std::string_view rest = line;
+    if (rest.ends_with('\r')) rest.remove_suffix(1);
+    if (!rest.ends_with('\\')) return false;
+    rest.remove_suffix(1);
+    line = rest;
+    return true;
+  }
+
+  void parse_line(std::string_view line) {
     Words words(line);
     const std::string_view key = words.next();
     if (key == "v") {
@@ -114,8 +148,22 @@ class ObjParser {
       corners.push_back(corner(element, word));
     if (corners.size() < 3)
       refuse(element, std::to_string(corners.size()) + " corners", "at least three");
-    for (std::size_t c = 2; c < corners.size(); ++c)
-      add_triangle({corners[0], corners[c - 1], corners[c]});
+
+    // The cut is the same for texture coordinates: it is given by numbers of corners.
+    places_.clear();
+    for (const Corner& c : corners)
+      places_.push_back(file_.mesh.positions[static_cast<std::size_t>(c.vertex)]);
+    triangles_.clear();
+    const std::string expected = cut_polygon(places_, triangles_);
+    if (!expected.empty()) refuse(element, std::to_string(corners.size()) + " corners", expected);
+    const auto at = [&](Index c) { return corners[static_cast<std::size_t>(c)]; };
+    if (corners.size() > 3) {
+      FilePolygon& polygon = file_.polygons.emplace_back();
+      polygon.first_face = static_cast<Index>(file_.mesh.faces.size());
+      polygon.face_count = static_cast<Index>(triangles_.size());
+      for (const Corner& c : corners) polygon.corners.push_back(c.vertex);
+    }
+    for (const Triangle& t : triangles_) add_triangle({at(t[0]), at(t[1]), at(t[2])});
   }
 
   void add_triangle(const std::array<Corner, 3>& corners) {
@@ -142,7 +190,11 @@ class ObjParser {
   MeshFile file_;
   MeshGroup group_;
   std::vector<Vec2d> uv_;
-  std::size_t line_ = 0, faces_ = 0;
+  std::size_t line_ = 1, next_line_ = 1;  ///< of the statement that is read, and of the text left
+  std::string joined_;                    ///< a statement of several lines
+  std::size_t faces_ = 0;
+  std::vector<Vec3d> places_;  ///< of the corners of a face
+  std::vector<Triangle> triangles_;
   bool all_have_uv_ = true;
 };
 

@@ -1,4 +1,5 @@
-// PLY: ascii and binary little endian. Positions and faces are read, all else is skipped.
+// PLY: ascii and binary of either byte order. Positions and faces are read, all else is skipped.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -9,11 +10,12 @@
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
+#include "sim/files/polygon.h"
 
 namespace icloth {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "binary files are read as they are");
+static_assert(std::endian::native == std::endian::little, "big endian files alone are turned");
 
 enum class Scalar { i8, u8, i16, u16, i32, u32, f32, f64 };
 
@@ -51,10 +53,15 @@ struct Element {
   }
 };
 
+enum class Format { ascii, little_endian, big_endian };
+
 template <class T>
-double load(const char* bytes) {
+double load(const char* bytes, Format format) {
+  char ordered[sizeof(T)];
+  std::copy_n(bytes, sizeof ordered, ordered);
+  if (format == Format::big_endian) std::reverse(ordered, ordered + sizeof ordered);
   T value;
-  std::memcpy(&value, bytes, sizeof value);
+  std::memcpy(&value, ordered, sizeof value);
   return static_cast<double>(value);
 }
 
@@ -66,9 +73,9 @@ class PlyParser {
     parse_header();
     for (const Element& element : elements_) check_count(element);
     for (const Element& element : elements_) parse_element(element);
+    cut_faces();
     const auto count = static_cast<Index>(file_.mesh.faces.size());
     file_.groups.push_back({std::filesystem::path(path_).stem().string(), 0, count});
-    check_indices();
     return std::move(file_);
   }
 
@@ -101,9 +108,15 @@ class PlyParser {
   }
 
   void parse_format(std::string_view format) {
-    if (format != "ascii" && format != "binary_little_endian")
-      refuse("format", format, "ascii or binary_little_endian");
-    ascii_ = format == "ascii";
+    if (format == "ascii") {
+      format_ = Format::ascii;
+    } else if (format == "binary_little_endian") {
+      format_ = Format::little_endian;
+    } else if (format == "binary_big_endian") {
+      format_ = Format::big_endian;
+    } else {
+      refuse("format", format, "ascii, binary_little_endian or binary_big_endian");
+    }
     has_format_ = true;
   }
 
@@ -139,36 +152,36 @@ class PlyParser {
   }
 
   void check_count(const Element& element) const {
-    if (element.count > rest_.size() / element.least_bytes(ascii_))
+    if (element.count > rest_.size() / element.least_bytes(format_ == Format::ascii))
       refuse("element " + element.name, std::to_string(element.count),
              "no more than fit into the " + std::to_string(rest_.size()) +
                  " bytes that follow the header");
   }
 
   double next_number(const ScalarName& type, const std::string& where) {
-    if (ascii_) return next_ascii(where);
+    if (format_ == Format::ascii) return next_ascii(where);
     if (rest_.size() < type.bytes) refuse(where, "(end of file)", "more data");
     const char* bytes = rest_.data();
     rest_.remove_prefix(type.bytes);
     switch (type.type) {
       case Scalar::i8:
-        return load<std::int8_t>(bytes);
+        return load<std::int8_t>(bytes, format_);
       case Scalar::u8:
-        return load<std::uint8_t>(bytes);
+        return load<std::uint8_t>(bytes, format_);
       case Scalar::i16:
-        return load<std::int16_t>(bytes);
+        return load<std::int16_t>(bytes, format_);
       case Scalar::u16:
-        return load<std::uint16_t>(bytes);
+        return load<std::uint16_t>(bytes, format_);
       case Scalar::i32:
-        return load<std::int32_t>(bytes);
+        return load<std::int32_t>(bytes, format_);
       case Scalar::u32:
-        return load<std::uint32_t>(bytes);
+        return load<std::uint32_t>(bytes, format_);
       case Scalar::f32:
-        return load<float>(bytes);
+        return load<float>(bytes, format_);
       case Scalar::f64:
         break;
     }
-    return load<double>(bytes);
+    return load<double>(bytes, format_);
   }
 
   double next_ascii(const std::string& where) {
@@ -235,36 +248,61 @@ class PlyParser {
 
   void parse_corners(const Property& property, std::size_t count, bool is_face,
                      const std::string& where) {
-    Triangle fan{};
     for (std::size_t k = 0; k < count; ++k) {
       const double value = next_number(property.type, where);
       if (!is_face) continue;
       if (!(value >= 0 && value < std::numeric_limits<Index>::max()) || value != std::floor(value))
         refuse(where, std::to_string(value), "the number of a vertex");
-      fan[std::min<std::size_t>(k, 2)] = static_cast<Index>(value);
-      if (k < 2) continue;
-      if (file_.mesh.faces.size() >= kLargestCount)
-        refuse(where, "one more", "at most 536870911 triangles");
-      file_.mesh.faces.push_back(fan);
-      fan[1] = fan[2];
+      corners_.push_back(static_cast<Index>(value));
     }
+    if (is_face) face_ends_.push_back(corners_.size());
   }
 
   /// After everything is read: vertices may come after the faces.
-  void check_indices() const {
-    const auto count = static_cast<Index>(file_.mesh.positions.size());
-    for (std::size_t f = 0; f < file_.mesh.faces.size(); ++f)
-      for (Index v : file_.mesh.faces[f])
-        if (v >= count)
-          refuse("triangle " + std::to_string(f), std::to_string(v),
-                 "the number of a vertex below " + std::to_string(count));
+  void cut_faces() {
+    const auto vertices = static_cast<Index>(file_.mesh.positions.size());
+    std::vector<Vec3d> places;
+    std::vector<Triangle> triangles;
+    std::size_t begin = 0;
+    for (std::size_t f = 0; f < face_ends_.size(); ++f) {
+      const std::string where = "face " + std::to_string(f);
+
+      // Where the corners are.
+      places.clear();
+      for (std::size_t k = begin; k < face_ends_[f]; ++k) {
+        const Index v = corners_[k];
+        if (v >= vertices)
+          refuse(where, std::to_string(v),
+                 "the number of a vertex below " + std::to_string(vertices));
+        places.push_back(file_.mesh.positions[static_cast<std::size_t>(v)]);
+      }
+
+      // The cut speaks of corners of the face, the mesh of vertices.
+      triangles.clear();
+      const std::string expected = cut_polygon(places, triangles);
+      if (!expected.empty()) refuse(where, std::to_string(places.size()) + " corners", expected);
+      if (file_.mesh.faces.size() + triangles.size() > kLargestCount)
+        refuse(where, "one more", "at most 536870911 triangles");
+      if (places.size() > 3)
+        file_.polygons.push_back({static_cast<Index>(file_.mesh.faces.size()),
+                                  static_cast<Index>(triangles.size()),
+                                  {corners_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                   corners_.begin() + static_cast<std::ptrdiff_t>(face_ends_[f])}});
+      const auto vertex = [&](Index c) { return corners_[begin + static_cast<std::size_t>(c)]; };
+      for (const Triangle& t : triangles)
+        file_.mesh.faces.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+      begin = face_ends_[f];
+    }
   }
 
   std::string_view rest_;
   const std::string& path_;
   std::vector<Element> elements_;
+  std::vector<Index> corners_;          ///< vertices of all faces, one after the other
+  std::vector<std::size_t> face_ends_;  ///< end of each face in corners_
   MeshFile file_;
-  bool ascii_ = true, has_format_ = false;
+  Format format_ = Format::ascii;
+  bool has_format_ = false;
 };
 
 }  // namespace

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
 #include "sim/files/body_io.h"
+#include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
 #include "tests/support/temporary_folder.h"
 
@@ -58,6 +60,30 @@ TEST(MeshIo, ObjWithCarriageReturnsAndNoFinalNewline) {
   EXPECT_EQ(file.mesh.faces, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
+TEST(MeshIo, ObjLinesGoOnAfterABackslash) {
+  for (const std::string end : {"\n", "\r\n"}) {
+    std::string text;
+    for (const char* line : {"# a path: C:\\", "v 0 \\", " 0\\", "0", "v 1 0 0", "v 0 1 0 # up \\",
+                             "g \\", "sheet", "f 1\\", "2 \\", "3", "f 3 2 1 \\"})
+      text += line + end;
+    const MeshFile file = parse_obj(text, "a.obj");
+    EXPECT_EQ(file.mesh.positions.size(), 3u);
+    EXPECT_EQ(file.mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+    EXPECT_EQ(file.groups.at(0).name, "sheet");
+  }
+}
+
+TEST(MeshIo, LinesAreCountedAsEditorsDo) {
+  const std::string text = "v 0 \\\n0 \\\n0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 \\\n9\nf 1 2 8\n";
+  try {
+    parse_obj(text, "a.obj");
+    FAIL() << "expected a refusal";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("a.obj: line 7: face 2: value '9'"))
+        << error.what();
+  }
+}
+
 TEST(MeshIo, AsciiPlySkipsOtherProperties) {
   const MeshFile file = read_mesh(kData + "square.ply");
   EXPECT_EQ(file.mesh.positions.at(2), (Vec3d{1, 1, 0.25}));
@@ -69,22 +95,34 @@ void append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-TEST(MeshIo, BinaryPlyWithFacesBeforeVertices) {
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty uchar flag\n"
-      "property list uchar ushort vertex_index\nelement vertex 3\nproperty double x\n"
-      "property double y\nproperty float z\nend_header\n";
-  append<std::uint8_t>(bytes, 7);
-  append<std::uint8_t>(bytes, 3);
-  for (int v = 2; v >= 0; --v) append(bytes, static_cast<std::uint16_t>(v));
-  for (int v = 0; v < 3; ++v) {
-    append(bytes, 0.1 + v);
-    append(bytes, 2.0 * v * v);
-    append(bytes, -0.5f);
+/// A value with its bytes in either order.
+template <class T>
+void append(std::string& bytes, T value, bool big_endian) {
+  std::string one;
+  append(one, value);
+  if (big_endian) std::ranges::reverse(one);
+  bytes += one;
+}
+
+TEST(MeshIo, BinaryPlyOfEitherByteOrderWithFacesBeforeVertices) {
+  for (const bool big : {false, true}) {
+    std::string bytes = std::string("ply\nformat ") +
+                        (big ? "binary_big_endian" : "binary_little_endian") +
+                        " 1.0\nelement face 1\nproperty ushort flag\n"
+                        "property list uint ushort vertex_index\nelement vertex 3\n"
+                        "property double x\nproperty double y\nproperty float z\nend_header\n";
+    append(bytes, std::uint16_t{7}, big);
+    append(bytes, std::uint32_t{3}, big);
+    for (int v = 2; v >= 0; --v) append(bytes, static_cast<std::uint16_t>(v), big);
+    for (int v = 0; v < 3; ++v) {
+      append(bytes, 0.1 + v, big);
+      append(bytes, 2.0 * v * v, big);
+      append(bytes, -0.5f, big);
+    }
+    const MeshFile file = parse_ply(bytes, "a.ply");
+    EXPECT_EQ(file.mesh.faces, (std::vector<Triangle>{{2, 1, 0}}));
+    EXPECT_EQ(file.mesh.positions.at(2), (Vec3d{2.1, 8, -0.5}));
   }
-  const MeshFile file = parse_ply(bytes, "a.ply");
-  EXPECT_EQ(file.mesh.faces, (std::vector<Triangle>{{2, 1, 0}}));
-  EXPECT_EQ(file.mesh.positions.at(2), (Vec3d{2.1, 8, -0.5}));
 }
 
 TEST(MeshIo, WrittenObjReadsBackBitForBit) {

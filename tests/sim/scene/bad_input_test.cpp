@@ -70,7 +70,7 @@ TEST(BadInput, Ply) {
   const std::vector<BadFile> files = {
       {"no.ply", "plx\n", {"header", "ply"}},
       {"cut_header.ply", "ply\nformat ascii 1.0\n", {"header", "end_header"}},
-      {"big.ply", "ply\nformat binary_big_endian 1.0\nend_header\n", {"binary_big_endian"}},
+      {"middle.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n", {"'binary_middle_"}},
       {"type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n", {"'half'"}},
       {"count.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", {"element vertex", "'-1'"}},
       {"huge.ply",
@@ -78,7 +78,7 @@ TEST(BadInput, Ply) {
        "property double y\nproperty double z\nend_header\n1234",
        {"element vertex", "500000000", "4 bytes"}},
       {"nan.ply", both + "0 0 0 1 nan 0 0 1 0 3 0 1 2\n", {"vertex 1", "nan", "finite"}},
-      {"index.ply", both + "0 0 0 1 0 0 0 1 0 3 0 1 3\n", {"triangle 0", "'3'", "below 3"}},
+      {"index.ply", both + "0 0 0 1 0 0 0 1 0 3 0 1 3\n", {"face 0", "'3'", "below 3"}},
       {"short.ply", both + "0 0 0 1 0 0 0 1 0 3 0 1   ", {"face 0", "end of file"}},
       {"list.ply", both + "0 0 0 1 0 0 0 1 0 9e9 0 1 2", {"face 0", "list length"}},
       {"two.ply", both + "0 0 0 1 0 0 0 1 0 2 0 1  ", {"face 0", "2 corners"}},
@@ -117,8 +117,28 @@ TEST(BadInput, ClothMeshes) {
   expect_error([&] { check_cloth_mesh(mesh, "m"); }, {"triangle 1", "0 1 3", "area above 0"});
   mesh.faces = {{0, 1, 2}, {3, 1, 3}};
   expect_error([&] { check_cloth_mesh(mesh, "m"); }, {"triangle 1", "3 1 3", "three different"});
-  mesh.faces = {{0, 1, 2}};
-  expect_error([&] { check_cloth_mesh(mesh, "m"); }, {"vertex 3", "0 triangles"});
+}
+
+TEST(BadInput, PolygonsThatCannotBeCut) {
+  const TemporaryFolder folder;
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.1 0\nv 2 0 0\nv 3 0 0\n";
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::vector<BadFile> files = {
+      {"bow.obj", square + "f 1 2 3\nf 1 3 4 5 2\n", {"line 9", "face 2", "'5 corners'", "cross"}},
+      {"line.obj", square + "f 1 2 6 7\n", {"line 8", "face 1", "'4 corners'", "span an area"}},
+      {"bow.ply",
+       header + "0 0 0 1 0 0 0 2 0 1.5 1 0 4 0 1 2 3\n",
+       {"face 0", "4 corners", "cross"}},
+      {"line.ply", header + "0 0 0 1 0 0 2 0 0 3 0 0 4 0 1 2 3\n", {"face 0", "span an area"}},
+  };
+  for (const BadFile& file : files) {
+    std::vector<std::string> words = file.words;
+    words.emplace_back(file.name);
+    const std::string path = folder.write(file.name, file.contents);
+    expect_error([&] { read_mesh(path); }, words);
+  }
 }
 
 std::string pc2(std::int32_t vertices, std::int32_t frames, std::size_t floats) {
