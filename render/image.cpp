@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/files/error.h"
+#include "sim/files/file_io.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -85,12 +86,19 @@ Image::Image(int image_width, int image_height) : width(image_width), height(ima
 }
 
 void write_png(const std::string& path, const Image& image) {
+  // Packed in memory first, so that the file is whole or not there.
+  std::string png;
+  const auto append = [](void* text, void* bytes, int count) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(bytes),
+                                            static_cast<std::size_t>(count));
+  };
   if (image.width < 1 || image.height < 1 ||
-      !stbi_write_png(path.c_str(), image.width, image.height, 4, image.pixels.data(),
-                      4 * image.width)) {
-    throw InputError(path +
-                     ": cannot be written, expected a folder that exists and may be written");
+      !stbi_write_png_to_func(append, &png, image.width, image.height, 4, image.pixels.data(),
+                              4 * image.width)) {
+    throw InputError(path + ": " + std::to_string(image.width) + " x " +
+                     std::to_string(image.height) + " pixels cannot be packed as PNG");
   }
+  write_file(path, png);
 }
 
 Image read_png(const std::string& path) {

@@ -1,6 +1,8 @@
 #include "app/common/program.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -15,6 +17,13 @@ int fail(int code, const std::string& what) {
   return code;
 }
 
+/// What was printed may still wait in a buffer for a disk that is full.
+void check_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw InputError(std::string("standard output: cannot be written (") + std::strerror(errno) +
+                     ")");
+}
+
 }  // namespace
 
 std::string first_line(const std::string& text) {
@@ -23,7 +32,9 @@ std::string first_line(const std::string& text) {
 
 int run_program(const std::function<int()>& work) {
   try {
-    return work();
+    const int code = work();
+    check_output();
+    return code;
   } catch (const InputError& error) {
     return fail(2, error.what());
   } catch (const DeviceError& error) {

@@ -10,8 +10,8 @@ namespace icloth {
 std::string first_line(const std::string& text);
 
 /// Runs the work of a program and returns its exit code. An exception becomes one line on stderr
-/// and a code: 2 bad usage or input (InputError, no memory), 3 a device or display is missing
-/// (DeviceError), 1 everything else.
+/// and a code: 2 bad usage or input (InputError, no memory) or standard output on a full disk, 3 a
+/// device or display is missing (DeviceError), 1 everything else.
 int run_program(const std::function<int()>& work);
 
 }  // namespace icloth

@@ -118,26 +118,27 @@ StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
 
   // CSV is opened now and gets its head; JSON is written at the end.
   if (json) return;
-  csv_.open(path_);
+  is_csv_ = true;
+  std::string names;
   for (const ReportColumn& column : report_columns())
-    csv_ << (&column == report_columns().data() ? "" : ",") << column.name;
-  csv_ << '\n' << std::flush;
-  if (!csv_) throw InputError("--stats " + path_ + ": cannot be written");
+    names += (names.empty() ? "" : ",") + std::string(column.name);
+  write_file(path_, names + "\n");
 }
 
 void StatisticsFile::add(const StepReport& report) {
-  if (!csv_.is_open()) return;
+  if (!is_csv_) return;
+  std::string row;
   for (const ReportColumn& column : report_columns())
-    csv_ << (&column == report_columns().data() ? "" : ",") << report_value(report, column);
+    row += (row.empty() ? "" : ",") + report_value(report, column);
 
-  // Every row reaches the file at once, so that a crash loses none.
-  csv_ << '\n' << std::flush;
+  // Every row reaches the file at once, so that a crash loses none and a full disk leaves whole
+  // ones.
+  append_file(path_, row + "\n");
 }
 
 void StatisticsFile::finish(const RunStatistics& statistics) {
-  // CSV has been written already and only has to be complete.
-  if (csv_.is_open() && !csv_) throw InputError("--stats " + path_ + ": cannot be written");
-  if (path_.empty() || csv_.is_open()) return;
+  // CSV has been written already.
+  if (path_.empty() || is_csv_) return;
 
   // JSON is a list of objects, one a step.
   std::string text = "[";

@@ -1,7 +1,6 @@
 // Statistics of the steps of a run: the table at its end and the files of --stats.
 #pragma once
 
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,7 +52,7 @@ class StatisticsFile {
 
  private:
   std::string path_;
-  std::ofstream csv_;
+  bool is_csv_ = false;
 };
 
 }  // namespace icloth

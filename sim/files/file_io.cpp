@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "sim/files/error.h"
 
@@ -52,20 +53,68 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-void write_file(const std::string& path, std::string_view contents) {
+OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
+  std::error_code error;
+  if (std::filesystem::is_symlink(path_, error))
+    target_ = std::filesystem::weakly_canonical(path_, error).string();
+  if (error) target_ = path_;
+  const auto status = std::filesystem::status(target_, error);
+  const bool is_device = std::filesystem::exists(status) &&
+                         !std::filesystem::is_regular_file(status) &&
+                         !std::filesystem::is_directory(status);
   // The process number keeps two programs that write the same file apart.
-  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
-  File file(std::fopen(temporary.c_str(), "wb"));
+  if (!is_device) temporary_ = target_ + ".tmp" + std::to_string(::getpid());
+  file_ = std::fopen(is_device ? target_.c_str() : temporary_.c_str(), "wb");
+  if (!file_) icloth::fail(path_, "cannot be written");
+}
+
+OutputFile::~OutputFile() {
+  if (!file_) return;
+  std::fclose(file_);
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
+}
+
+void OutputFile::fail() {
+  const int reason = errno;
+  if (file_) std::fclose(file_);
+  file_ = nullptr;
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
+  errno = reason;
+  icloth::fail(path_, "cannot be written");
+}
+
+void OutputFile::write(std::string_view contents) {
+  if (std::fwrite(contents.data(), 1, contents.size(), file_) != contents.size()) fail();
+}
+
+void OutputFile::commit() {
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (!closed) fail();
+  if (!temporary_.empty() && std::rename(temporary_.c_str(), target_.c_str()) != 0) fail();
+}
+
+void write_file(const std::string& path, std::string_view contents) {
+  OutputFile file(path);
+  file.write(contents);
+  file.commit();
+}
+
+void append_file(const std::string& path, std::string_view contents) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  const bool is_regular = !error;
+  File file(std::fopen(path.c_str(), "ab"));
   if (!file) fail(path, "cannot be written");
   const bool written =
       std::fwrite(contents.data(), 1, contents.size(), file.get()) == contents.size();
   const bool closed = std::fclose(file.release()) == 0;
-  if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
-    std::remove(temporary.c_str());
-    errno = reason;
-    fail(path, "cannot be written");
-  }
+  if (written && closed) return;
+
+  // What did get in is taken back.
+  const int reason = errno;
+  if (is_regular) std::filesystem::resize_file(path, size, error);
+  errno = reason;
+  fail(path, "cannot be written");
 }
 
 }  // namespace icloth

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -14,8 +15,32 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes = std::ui
 /// Extension with its dot, in lower case: ".obj"; empty where there is none.
 std::string lower_extension(const std::string& path);
 
-/// Written to a temporary beside `path` first, then renamed: readers never see half a file.
-/// Throws InputError when the place cannot be written.
+/// A file that appears whole or not at all: it is written to a temporary beside `path` and renamed
+/// by commit(). A link is followed; a device, for example /dev/stdout, is written directly. All
+/// throw InputError when the place cannot be written, for example because the disk is full.
+class OutputFile {
+ public:
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::string_view contents);
+  void commit();
+
+ private:
+  [[noreturn]] void fail();
+
+  std::string path_;       ///< as asked for, for messages
+  std::string target_;     ///< where links lead to
+  std::string temporary_;  ///< empty for a device
+  std::FILE* file_ = nullptr;
+};
+
+/// Writes a whole file through OutputFile.
 void write_file(const std::string& path, std::string_view contents);
+
+/// Adds to the end of a file, all or nothing. Throws InputError as OutputFile does.
+void append_file(const std::string& path, std::string_view contents);
 
 }  // namespace icloth

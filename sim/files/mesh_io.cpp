@@ -67,8 +67,31 @@ void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name) {
                      ": value 0 triangles, expected at least one that uses it");
 }
 
-void write_obj(const std::string& path, std::span<const NamedMesh> objects) {
-  std::string text;
+void check_edges(const TriangleMesh& mesh, const std::string& name,
+                 std::span<const Index> numbers) {
+  // Edges sorted by their vertices: those of one edge stand together.
+  std::vector<std::array<Index, 2>> edges;
+  edges.reserve(3 * mesh.faces.size());
+  for (const Triangle& t : mesh.faces)
+    for (std::size_t c = 0; c < 3; ++c)
+      edges.push_back({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
+  std::ranges::sort(edges);
+
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    while (end < edges.size() && edges[end] == edges[begin]) ++end;
+    if (end - begin <= kMostFacesOnEdge) continue;
+    const auto number = [&](Index v) {
+      return std::to_string(numbers.empty() ? v : numbers[static_cast<std::size_t>(v)]);
+    };
+    throw InputError(name + ": edge between vertices " + number(edges[begin][0]) + " and " +
+                     number(edges[begin][1]) + ": " + std::to_string(end - begin) +
+                     " faces, expected at most " + std::to_string(kMostFacesOnEdge));
+  }
+}
+
+void write_obj(const std::string& path, std::span<const NamedMesh> objects,
+               const std::string& comment) {
+  std::string text = comment.empty() ? "" : "# " + comment + "\n";
   std::size_t first = 1;
   for (const NamedMesh& object : objects) {
     text += "g " + object.name + "\n";

@@ -52,7 +52,9 @@ struct NamedMesh {
   std::span<const Triangle> faces;  ///< indices into positions
 };
 
-/// One group per object, coordinates with 9 significant digits; written beside and renamed.
-void write_obj(const std::string& path, std::span<const NamedMesh> objects);
+/// One group per object, coordinates with 9 significant digits; written beside and renamed. The
+/// comment is the first line.
+void write_obj(const std::string& path, std::span<const NamedMesh> objects,
+               const std::string& comment = "");
 
 }  // namespace icloth

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/cli/commands/query_file.h"
-#include "sim/files/error.h"
+#include "sim/files/file_io.h"
 
 namespace icloth {
 namespace {
@@ -105,20 +105,13 @@ void print(const Tally& t) {
   t.miss_times.print("  misses        ");
 }
 
-struct CloseFile {
-  void operator()(std::FILE* f) const { std::fclose(f); }
-};
-
 }  // namespace
 
 int run_ccd(const std::string& file, const std::string& prediction_file) {
   // A prediction file that cannot be written is refused before the long part.
   QueryFile queries(file);
-  std::unique_ptr<std::FILE, CloseFile> predictions;
-  if (!prediction_file.empty()) {
-    predictions.reset(std::fopen(prediction_file.c_str(), "w"));
-    if (!predictions) throw InputError(prediction_file + ": cannot be written");
-  }
+  std::optional<OutputFile> predictions;
+  if (!prediction_file.empty()) predictions.emplace(prediction_file);
 
   // The queries are read one by one, so that files of any size fit into memory.
   const double overhead = clock_cost();
@@ -131,17 +124,11 @@ int run_ccd(const std::string& file, const std::string& prediction_file) {
 
     // The line of the query in the prediction file.
     if (!predictions) continue;
-    if (is_hit) {
-      std::fprintf(predictions.get(), "1 %.17g\n", hit.toi);
-    } else {
-      std::fputs("0\n", predictions.get());
-    }
+    char line[40] = "0\n";
+    if (is_hit) std::snprintf(line, sizeof line, "1 %.17g\n", hit.toi);
+    predictions->write(line);
   }
-
-  // A full disk may only show now.
-  if (predictions && (std::fflush(predictions.get()) != 0 || std::ferror(predictions.get()))) {
-    throw InputError(prediction_file + ": cannot be written to the end; is the disk full?");
-  }
+  if (predictions) predictions->commit();
   print(tally);
   return tally.false_negatives > 0 ? 1 : 0;
 }

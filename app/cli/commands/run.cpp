@@ -7,44 +7,12 @@
 #include "app/common/headless.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
-#include "sim/files/mesh_io.h"
+#include "sim/files/frame_export.h"
 #include "sim/scene/scene_io.h"
 #include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {
-
-/// Writes frame_00000.obj, frame_00001.obj … with cloths and obstacles as groups.
-class FrameExport {
- public:
-  FrameExport(const RunOptions& options, const Scene& scene) : scene_(&scene) {
-    if (!options.out.empty()) folder_ = options.out;
-    every_ = options.every;
-  }
-
-  void write(const Simulator& simulator) {
-    if (folder_.empty() || steps_++ % every_ != 0) return;
-    if (frame_ == 0) make_folder();
-    simulator.positions(positions_);
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%05ld.obj", frame_++);
-    write_obj((folder_ / name).string(), named_meshes(*scene_, positions_));
-  }
-
- private:
-  void make_folder() const {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error)
-      throw InputError("--out " + folder_.string() + ": cannot be made a folder (" +
-                       error.message() + ")");
-  }
-
-  const Scene* scene_;
-  std::filesystem::path folder_;
-  std::vector<Vec3f> positions_;
-  long every_ = 1, steps_ = 0, frame_ = 0;
-};
 
 /// Refuses outputs that cannot work before anything takes time.
 void check(const RunOptions& options) {
@@ -114,10 +82,20 @@ int run_run(const RunOptions& options) {
   // Statistics and frames are written while the run goes.
   set_thread_count(common.threads);
   StatisticsFile stats(options.stats_file);
-  FrameExport frames(options, *job.scene);
+  FrameExport frames(options.out, options.every);
+  std::vector<Vec3f> positions;
+  long step = 0;
   job.watch = [&](const Simulator& simulator, const StepReport* report) {
-    frames.write(simulator);
     if (report) stats.add(*report);
+
+    // A refused step that ends the run leaves the state of the step before as the last one.
+    const bool stopped = report && !report->accepted && job.stop_on_failure;
+    if (report && !stopped) ++step;
+    const bool last = stopped || step == job.steps;
+    if (!frames.wants(step, last)) return;
+    simulator.positions(positions);
+    frames.write(named_meshes(*job.scene, positions), step,
+                 simulator.time(), last);
   };
 
   // The run itself.

@@ -44,11 +44,12 @@ class Cli : public ::testing::Test {
     if (!HasFailure()) fs::remove_all(base_);
   }
 
-  /// `arguments` as typed into a shell; `environment` as VAR=VALUE words before the program.
+  /// `arguments` as typed into a shell, where `> FILE` leads the output elsewhere; `environment` as
+  /// VAR=VALUE words before the program.
   Outcome icloth(const std::string& arguments, const std::string& environment = "") const {
     const fs::path out = base_ / "out", err = base_ / "err";
-    const std::string command = "cd '" + folder_.string() + "' && env " + environment +
-                                " timeout 100 '" + ICLOTH_PROGRAM "' " + arguments + " > '" +
+    const std::string command = "cd '" + folder_.string() + "' && { env " + environment +
+                                " timeout 100 '" + ICLOTH_PROGRAM "' " + arguments + " ; } > '" +
                                 out.string() + "' 2> '" + err.string() + "' < /dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
@@ -230,6 +231,70 @@ TEST_F(Cli, RunExportsFramesAndStatistics) {
   ASSERT_EQ(json.size(), 4u);
   EXPECT_EQ(json[3]["impacts_left"], 0);
   EXPECT_EQ(json[3]["state_hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(Cli, TheLastStateIsExportedAndEveryFrameSaysItsTime) {
+  write("drop.json", kDrop);
+  ASSERT_EQ(icloth("run drop.json --device cpu --steps 25 --out f --export obj --every 10").code,
+            0);
+  EXPECT_EQ(read(folder_ / "f" / "frames.csv"),
+            "frame,step,time\n0,0,0\n1,10,0.1\n2,20,0.2\n3,25,0.25\n");
+  const std::string last = read(folder_ / "f" / "frame_00003.obj");
+  EXPECT_TRUE(last.starts_with("# step 25, time 0.25 s\n")) << last.substr(0, 60);
+  EXPECT_EQ(read(folder_ / "f" / "last.obj"), last);
+  ASSERT_EQ(icloth("run drop.json --device cpu --steps 0 --out g --export obj").code, 0);
+  EXPECT_EQ(read(folder_ / "g" / "last.obj"), read(folder_ / "g" / "frame_00000.obj"));
+}
+
+TEST_F(Cli, AFullDiskIsNoticedAndLeavesNoCutOffFile) {
+  write("drop.json", kDrop);
+  fs::create_symlink("/dev/full", folder_ / "full.csv");
+  fs::create_symlink("/dev/full", folder_ / "full.json");
+  fs::create_symlink("/dev/full", folder_ / "full.png");
+  write(
+      "queries.csv", "vf" + [] {
+        std::string zeros;
+        for (int i = 0; i < 24; ++i) zeros += "," + std::to_string(i % 5);
+        return zeros + "\n";
+      }());
+  const std::size_t before = files();
+  for (const char* arguments : {
+           "run scarf --dump-config > /dev/full",
+           "run drop.json --device cpu --steps 1 > /dev/full",
+           "info --keys > /dev/full",
+           "--help > /dev/full",
+           "run drop.json --device cpu --quiet --steps 2 --stats full.csv",
+           "run drop.json --device cpu --quiet --steps 2 --stats full.json",
+           "run drop.json --device cpu --quiet --steps 2 --record full.json",
+           "ccd queries.csv --pred full.csv",
+       }) {
+    const Outcome outcome = icloth(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << arguments << "\n" << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "cannot be written (No space left")) << outcome.err;
+    EXPECT_EQ(files(), before) << arguments;
+  }
+  const Outcome picture = icloth("render drop.json --device cpu --quiet --steps 0 --out full.png");
+  if (picture.code != 3) {
+    EXPECT_EQ(picture.code, 2) << picture.err;
+    EXPECT_TRUE(contains(picture.err, "full.png: cannot be written (No space left")) << picture.err;
+  }
+}
+
+TEST_F(Cli, FramesThatNoLongerFitEndTheRun) {
+  write("drop.json", kDrop);
+  write("limited.sh", "trap '' XFSZ\nulimit -f 4\nexec \"$@\"\n");  // in KiB
+  const std::string command = "cd '" + folder_.string() +
+                              "' && bash limited.sh '" ICLOTH_PROGRAM
+                              "' run drop.json --device cpu --quiet --steps 2 --out f --export obj"
+                              " 2> err.txt";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  const std::string message = read(folder_ / "err.txt");
+  EXPECT_TRUE(contains(message, "f/frame_00000.obj: cannot be written (File too large)"))
+      << message;
+  EXPECT_EQ(count_lines(message), 1u) << message;
+  EXPECT_TRUE(fs::is_empty(folder_ / "f"));
 }
 
 TEST_F(Cli, DurationAndTimeGiveTheSteps) {

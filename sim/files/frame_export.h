@@ -1,0 +1,38 @@
+// States of a run as numbered mesh files.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "sim/files/mesh_io.h"
+
+namespace icloth {
+
+/// Writes every K-th state of a run and the last one as frame_00000.obj, frame_00001.obj and so on
+/// into a folder. The frames are numbered consecutively; frames.csv beside them says step and time
+/// of each, as does a comment in every file. The last state is also written as last.obj.
+class FrameExport {
+ public:
+  /// `folder` is made when the first frame is written; empty: nothing is written.
+  FrameExport(std::string folder, long every);
+
+  /// Whether the state after that many steps is written; `last`: it is that at the end of the run.
+  bool wants(std::int64_t step, bool last) const {
+    return !folder_.empty() && (last || step % every_ == 0);
+  }
+  /// Writes a state that is wanted, `time` [s] after the start. Throws InputError where the folder
+  /// cannot be made or a file cannot be written.
+  void write(std::span<const NamedMesh> meshes, std::int64_t step, double time, bool last);
+
+ private:
+  void write_frame(std::span<const NamedMesh> meshes, std::int64_t step, double time,
+                   const std::string& comment);
+
+  std::string folder_;
+  std::int64_t every_;
+  std::int64_t last_step_ = -1;  ///< of the frame written last; −1: none yet
+  long frames_ = 0;
+};
+
+}  // namespace icloth
