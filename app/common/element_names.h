@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/files/weld.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene.h"
 #include "sim/state/report.h"
@@ -14,7 +15,9 @@ namespace icloth {
 /// Numbers elements across objects in scene order, cloths first, and names them again.
 class ElementNames {
  public:
-  explicit ElementNames(const Scene& scene);
+  /// `layouts` are those of the cloths' files: their vertices are named by the numbers that they
+  /// have there. Empty: by those of the mesh.
+  explicit ElementNames(const Scene& scene, std::span<const FileLayout> layouts = {});
   /// Adds an object with its name ("cloth:shirt"), vertices and faces.
   void add(std::string name, Index vertices, Index faces);
 
@@ -27,7 +30,9 @@ class ElementNames {
   struct Object {
     std::string name;
     Index first_vertex, first_face;
+    std::vector<Index> file_numbers;  ///< of the vertices, where they are not those of the mesh
   };
+  static std::string number(const Object& object, Index vertex);
   const Object& at_face(Index global) const;
   const Object& at_vertex(Index global) const;
   std::string vertices(std::span<const Index> globals) const;
@@ -38,6 +43,7 @@ class ElementNames {
 
 /// Prints the start intersections of a scene to stderr, the first ten by name. Returns true when
 /// there are some; nothing may be simulated then.
-bool report_start_intersections(const Scene& scene, bool single_precision);
+bool report_start_intersections(const Scene& scene, bool single_precision,
+                                std::span<const FileLayout> layouts = {});
 
 }  // namespace icloth

@@ -6,6 +6,7 @@
 #include "app/common/element_names.h"
 #include "app/common/machine.h"
 #include "app/common/progress.h"
+#include "sim/files/error.h"
 #include "sim/scene/intersections.h"
 
 namespace icloth {
@@ -14,8 +15,8 @@ namespace {
 constexpr std::size_t kShownPairs = 10;
 
 /// Tells why a step was refused, and the first of its offending pairs.
-void print_refusal(const Scene& scene, const StepReport& report) {
-  const ElementNames names(scene);
+void print_refusal(const HeadlessJob& job, const StepReport& report) {
+  const ElementNames names(*job.scene, job.origin.layouts);
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
                static_cast<long long>(report.step), report.time,
                !report.finite   ? "the state was not finite, "
@@ -48,6 +49,11 @@ void apply_parameters(Simulator& simulator, const Recording::Step& input) {
 
 }  // namespace
 
+void print_notes(const SceneOrigin& origin) {
+  for (const std::string& note : origin.notes)
+    std::fprintf(stderr, "icloth: note: %s\n", one_line(note).c_str());
+}
+
 std::size_t count_penetrations(const Simulator& simulator) {
   const Scene& scene = simulator.scene();
   const Snapshot state = simulator.snapshot();
@@ -71,9 +77,11 @@ std::size_t count_penetrations(const Simulator& simulator) {
 
 HeadlessResult run_headless(const HeadlessJob& job) {
   HeadlessResult result;
+  if (!job.quiet) print_notes(job.origin);
 
   // A start state that intersects is refused.
-  result.start_refused = report_start_intersections(*job.scene, job.build != Build::cpu64);
+  result.start_refused =
+      report_start_intersections(*job.scene, job.build != Build::cpu64, job.origin.layouts);
   if (result.start_refused) return result;
 
   const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);
@@ -94,7 +102,7 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     // A refused step is reported at once; the run may go on after it.
     if (!report.accepted) {
       progress.finish();
-      print_refusal(*job.scene, report);
+      print_refusal(job, report);
       result.refused.push_back(report);
       if (job.stop_on_failure) break;
     }

@@ -6,12 +6,14 @@
 
 #include "app/common/run_statistics.h"
 #include "sim/scene/input.h"
+#include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 
 namespace icloth {
 
 struct HeadlessJob {
   std::shared_ptr<const Scene> scene;
+  SceneOrigin origin;  ///< of the scene: its notes are printed, its numbers used in messages
   Build build = Build::cpu32;
   long steps = 0;
   const Recording* input = nullptr;  ///< replaces the scene's scripted grabs; null: the script
@@ -35,6 +37,9 @@ struct HeadlessResult {
 /// Checks the start state, steps, and checks the final state exactly. Start intersections and
 /// refused steps are printed to stderr.
 HeadlessResult run_headless(const HeadlessJob& job);
+
+/// Prints what the loader has to say about the input of a scene to stderr, a line each.
+void print_notes(const SceneOrigin& origin);
 
 /// Pairs of intersecting faces of a simulator's present state.
 std::size_t count_penetrations(const Simulator& simulator);

@@ -33,8 +33,17 @@ struct MeshFile {
 /// of range, no triangles.
 MeshFile read_mesh(const std::string& path);
 
-/// Throws InputError naming the first zero-area face, vertex used by no face, or repeated index.
+/// Throws InputError naming the first face of a cloth without area or with a repeated vertex.
 void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
+
+/// Faces that may share an edge of a cloth: every two of them resist bending against each other, so
+/// time and memory grow with their square.
+inline constexpr std::size_t kMostFacesOnEdge = 16;
+
+/// Throws InputError naming the first edge of a cloth with more than kMostFacesOnEdge faces.
+/// `numbers` are the vertices as the file counts them; empty: as the mesh does.
+void check_edges(const TriangleMesh& mesh, const std::string& name,
+                 std::span<const Index> numbers = {});
 
 /// Positions of a mesh over time.
 struct PointCache {

@@ -4,6 +4,8 @@
 
 #include "sim/files/assets.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/polygon.h"
+#include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/scene_json.h"
 
@@ -30,31 +32,53 @@ bool is_material_space(const std::vector<std::array<Vec2d, 3>>& uv, const std::v
   return std::abs(uv_area - rest_area) < 0.1 * rest_area;
 }
 
-void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, Cloth& cloth) {
+/// A distance in metres; 0 or true: exact doubles alone, false: nothing is welded.
+WeldChoice parse_weld(const JsonValue& value) {
+  constexpr double kSmallestDistance = 1e-9;  // below it nothing but exact doubles is near
+  WeldChoice choice;
+  choice.asked = true;
+  if (value.json().is_boolean()) {
+    choice.on = value.boolean();
+    return choice;
+  }
+  choice.distance = value.number({0, 1});
+  if (choice.distance < kSmallestDistance) choice.distance = 0;
+  return choice;
+}
+
+void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
+  Cloth& cloth = loaded.cloth;
   const JsonValue name = object["mesh"];
-  cloth.mesh = read_mesh(find_asset(name.text(), folder.path)).mesh;
+  MeshFile file = read_mesh(find_asset(name.text(), folder.path));
   if (object.has("triangles"))
     object["triangles"].refuse(
         "no such key: only grids choose their triangles (see \"subdivide\")");
-  cloth.rest = cloth.mesh.positions;
   if (object.has("rest")) {
-    const TriangleMesh rest = read_mesh(find_asset(object["rest"].text(), folder.path)).mesh;
-    if (rest.positions.size() != cloth.mesh.positions.size() || rest.faces != cloth.mesh.faces)
+    MeshFile rest = read_mesh(find_asset(object["rest"].text(), folder.path));
+    if (!same_faces(file, rest))
       object["rest"].refuse("a mesh with the same vertices and faces as \"mesh\"");
-    cloth.rest = rest.positions;
-    if (!rest.uv.empty()) cloth.mesh.uv = rest.uv;
+    cut_like(rest, file);  // polygons are cut where they are not bent
+    cloth.rest = std::move(rest.mesh.positions);
+    if (!rest.mesh.uv.empty()) file.mesh.uv = std::move(rest.mesh.uv);
   }
+  cloth.mesh = std::move(file.mesh);
+  if (cloth.rest.empty()) cloth.rest = cloth.mesh.positions;
   check_cloth_mesh(cloth.mesh, name.text());
   check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, name.text() + " (rest shape)");
-  int levels = 0;
+
+  ClothMeshOptions options;
+  options.object = "cloth '" + cloth.name + "'";
+  options.file = name.text();
+  if (object.has("weld")) options.weld = parse_weld(object["weld"]);
+  if (object.has("transform")) options.scale = parse_transform(object["transform"]).scale;
   if (object.has("subdivide"))
-    levels = static_cast<int>(object["subdivide"].integer(0, kMaxSubdivisions));
-  for (int i = 0; i < levels; ++i) {
-    if (cloth.mesh.faces.size() * 4 > static_cast<std::size_t>(folder.limits.triangles))
-      object["subdivide"].refuse("at most " + std::to_string(folder.limits.triangles) +
-                                 " triangles");
-    subdivide(cloth.mesh, cloth.rest);
-  }
+    options.subdivisions = static_cast<int>(object["subdivide"].integer(0, kMaxSubdivisions));
+  const std::size_t most = static_cast<std::size_t>(folder.limits.triangles);
+  if (options.subdivisions > 0 && cloth.mesh.faces.size() > most >> (2 * options.subdivisions))
+    object["subdivide"].refuse("at most " + std::to_string(most) + " triangles");
+  std::vector<std::string> notes;
+  loaded.layout = prepare_cloth_mesh(cloth, options, notes);
+  for (std::string& note : notes) folder.note(std::move(note));
 }
 
 void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
@@ -66,7 +90,7 @@ void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   const double scaled = std::clamp<double>(std::round(triangles * folder.triangle_scale), 2, most);
   const GridShape shape = parse_grid(mesh.required("grid"), static_cast<Index>(scaled));
   mesh.finish();
-  for (const char* key : {"rest", "subdivide"})
+  for (const char* key : {"rest", "subdivide", "weld"})
     if (object.has(key))
       object[key].refuse("no such key: only for mesh files, a grid is flat at rest");
   loaded.grid = make_grid(shape);
@@ -74,20 +98,24 @@ void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   loaded.cloth.rest = loaded.grid->rest;
 }
 
-void place_cloth(JsonObject& object, LoadedCloth& loaded) {
+/// Applies the transform of a cloth and returns its scale.
+Vec3d place_cloth(JsonObject& object, LoadedCloth& loaded) {
   Cloth& cloth = loaded.cloth;
+  Vec3d scale{1, 1, 1};
   if (object.has("transform")) {
     const Placement place = parse_transform(object["transform"]);
-    const Vec3d s = place.scale;
+    const Vec3d s = scale = place.scale;
     if (!cloth.mesh.uv.empty() && (s.x != s.y || s.y != s.z))
       object["transform"].refuse("one scale for all axes on a cloth with material coordinates");
     for (Vec3d& p : cloth.mesh.positions) p = place(p);
+    for (Vec3d& p : loaded.layout.positions) p = place(p);
     for (Vec3d& p : cloth.rest) p = {s.x * p.x, s.y * p.y, s.z * p.z};
     for (auto& corners : cloth.mesh.uv)
       for (Vec2d& corner : corners) corner = s.x * corner;
   }
   if (!loaded.grid && !is_material_space(cloth.mesh.uv, cloth.rest, cloth.mesh.faces))
     cloth.mesh.uv.clear();
+  return scale;
 }
 
 void pin_box(const JsonValue& value, const Cloth& cloth, std::vector<bool>& pinned) {
@@ -116,7 +144,8 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
     std::vector<Index> named;
     if (item.json().is_string() && loaded.grid) named = grid_vertices(*loaded.grid, item.text());
     if (named.empty()) named = {parse_vertex(item, loaded)};
-    for (Index v : named) pinned[static_cast<std::size_t>(v)] = true;
+    for (Index v : named)
+      if (v != kNone) pinned[static_cast<std::size_t>(v)] = true;  // without a face it stays anyway
   }
   for (std::size_t v = 0; v < pinned.size(); ++v)
     if (pinned[v]) loaded.cloth.pins.push_back(static_cast<Index>(v));
@@ -143,11 +172,16 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   loaded.cloth.name = object.text("name", "cloth" + std::to_string(number));
   const JsonValue mesh = object.required("mesh");
   if (mesh.json().is_string()) {
-    read_cloth_mesh(object, folder, loaded.cloth);
+    read_cloth_mesh(object, folder, loaded);
   } else {
     make_cloth_grid(object, folder, loaded);
   }
-  place_cloth(object, loaded);
+  const Vec3d scale = place_cloth(object, loaded);
+  if (!loaded.grid) {
+    const std::string note =
+        unit_note("cloth '" + loaded.cloth.name + "'", loaded.cloth.mesh.positions, scale, true);
+    if (!note.empty()) folder.note(note);
+  }
   if (object.has("pins")) parse_pins(object["pins"], loaded);
   const JsonValue material = object["material"];
   loaded.cloth.material = material.json().is_object()

@@ -10,6 +10,7 @@
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
+#include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/presets.h"
 #include "sim/scene/repair.h"
@@ -119,7 +120,7 @@ CameraPose framing_camera(const std::vector<Vec3d>& points) {
   return camera;
 }
 
-Scene scene_of_mesh(const std::string& path) {
+Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
   Scene scene;
   scene.name = fs::path(path).stem().string();
   Cloth cloth;
@@ -128,6 +129,12 @@ Scene scene_of_mesh(const std::string& path) {
   check_cloth_mesh(cloth.mesh, path);
   cloth.mesh.uv.clear();  // may be texture coordinates of any size
   cloth.rest = cloth.mesh.positions;
+  ClothMeshOptions options;
+  options.object = "cloth '" + cloth.name + "'";
+  options.file = path;
+  origin.layouts.push_back(prepare_cloth_mesh(cloth, options, origin.notes));
+  const std::string note = unit_note(options.object, cloth.mesh.positions, {1, 1, 1}, true);
+  if (!note.empty()) origin.notes.push_back(note + " (in a scene file)");
   cloth.material = load_material("default", "");
   hang_by_highest(cloth);
   scene.cloths.push_back(std::move(cloth));
@@ -152,31 +159,34 @@ std::string scene_path(const std::string& argument) {
   return path;
 }
 
-Scene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits) {
+Scene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits,
+                    SceneOrigin& origin) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
-  SceneFolder folder{fs::path(path).parent_path().string(), 1, limits};
+  SceneFolder folder{fs::path(path).parent_path().string(), 1, limits, nullptr};
   if (triangles > 0) {
     const double own = total_grid_triangles(json);
     if (!(own > 0)) throw InputError(path + ": --set triangles: no cloth of the scene is a grid");
     folder.triangle_scale = triangles / own;
   }
-  return parse_scene(json, path, folder);
+  return parse_scene(json, path, folder, origin);
 }
 
 }  // namespace
 
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
-                                        const SceneLimits& limits) {
+                                        const SceneLimits& limits, SceneOrigin* origin) {
+  SceneOrigin own;
+  if (!origin) origin = &own;
   const Overrides set = split_overrides(overrides, limits);
   auto scene = std::make_shared<Scene>();
   if (is_mesh_name(argument)) {
     if (set.triangles > 0)
       throw InputError(argument + ": --set triangles: a mesh file has no grid");
-    *scene = scene_of_mesh(argument);
+    *scene = scene_of_mesh(argument, *origin);
   } else {
-    *scene = scene_of_json(argument, set.triangles, limits);
+    *scene = scene_of_json(argument, set.triangles, limits, *origin);
     if (set.triangles > 0) fit_thickness(*scene);
   }
   scene->source = argument;

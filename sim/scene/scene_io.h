@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "sim/files/weld.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {
@@ -15,13 +16,20 @@ struct SceneLimits {
   Index body_triangles = 8'000'000;  ///< of one sphere, capsule, box, plane or funnel
 };
 
+/// What the files of a scene hold beyond what is simulated.
+struct SceneOrigin {
+  std::vector<FileLayout> layouts;  ///< of the mesh files of the cloths (cloths)
+  std::vector<std::string> notes;   ///< what the user should know about the input, a line each
+};
+
 /// SCENE argument of the command line: built-in name, scene JSON, or mesh file.
 /// `overrides` are --set arguments "KEY=VALUE"; keys are parameters, "triangles" (of all grids
 /// together), "preset" (sim/scene/presets.h), or "repair_start" (on: shallow intersections are
-/// separated, sim/scene/repair.h). Throws InputError with one line: file, element, value, what was
-/// expected.
+/// separated, sim/scene/repair.h). `origin` is filled where it is given. Throws InputError with one
+/// line: file, element, value, what was expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
-                                        const SceneLimits& limits = {});
+                                        const SceneLimits& limits = {},
+                                        SceneOrigin* origin = nullptr);
 
 }  // namespace icloth

@@ -148,8 +148,14 @@ void parse_parameters(JsonValue value, const std::string& group, Parameters& par
 }
 
 Index parse_vertex(JsonValue value, const LoadedCloth& cloth) {
-  const auto count = static_cast<std::int64_t>(cloth.cloth.mesh.positions.size());
-  if (value.json().is_number()) return static_cast<Index>(value.integer(0, count - 1));
+  const FileLayout& layout = cloth.layout;
+  const std::size_t vertices =
+      layout.is_identity() ? cloth.cloth.mesh.positions.size() : layout.vertex.size();
+  if (value.json().is_number()) {
+    const std::int64_t number = value.integer(0, static_cast<std::int64_t>(vertices) - 1);
+    return layout.is_identity() ? static_cast<Index>(number)
+                                : layout.vertex[static_cast<std::size_t>(number)];
+  }
   const std::string& name = value.text();
   const std::vector<Index> found =
       cloth.grid ? grid_vertices(*cloth.grid, name) : std::vector<Index>{};
@@ -167,6 +173,7 @@ ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths)
   if (object.has("cloth")) grab.cloth = find_cloth(object["cloth"], cloths);
   grab.vertex =
       parse_vertex(object.required("vertex"), cloths[static_cast<std::size_t>(grab.cloth)]);
+  if (grab.vertex == kNone) object["vertex"].refuse("a vertex that a face uses");
   grab.path = parse_path(object.required("path"));
   if (object.boolean("smooth", false)) grab.path = smoothed(grab.path);
   grab.radius = object.number("radius", 0, {0, 10});
@@ -194,9 +201,11 @@ CameraPose parse_camera(JsonValue value) {
 }
 
 Scene parse_scene(const nlohmann::json& json, const std::string& source,
-                  const SceneFolder& folder) {
+                  const SceneFolder& scene_folder, SceneOrigin& origin) {
   JsonObject object(JsonValue(json, source));
   Scene scene;
+  SceneFolder folder = scene_folder;
+  folder.notes = &origin.notes;
   scene.source = source;
   parse_settings(object, scene);
 
@@ -228,7 +237,10 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   refuse_feature(object, "light", "the picture has its own");
   object.finish();
   if (cloths.empty()) object["cloths"].refuse("at least one cloth");
-  for (LoadedCloth& loaded : cloths) scene.cloths.push_back(std::move(loaded.cloth));
+  for (LoadedCloth& loaded : cloths) {
+    scene.cloths.push_back(std::move(loaded.cloth));
+    origin.layouts.push_back(std::move(loaded.layout));
+  }
   return scene;
 }
 

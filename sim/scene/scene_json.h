@@ -23,6 +23,7 @@ struct Placement {
 /// A cloth of the scene and, for a grid, the names of its vertices.
 struct LoadedCloth {
   Cloth cloth;
+  FileLayout layout;  ///< of its mesh file
   std::optional<GridMesh> grid;
 };
 
@@ -30,6 +31,12 @@ struct SceneFolder {
   std::string path;           ///< files are looked for here, then in the assets folder
   double triangle_scale = 1;  ///< factor on the triangles of every grid
   SceneLimits limits;
+  /// Lines that the user should read go here; null: they are dropped.
+  std::vector<std::string>* notes = nullptr;
+
+  void note(std::string line) const {
+    if (notes) notes->push_back(std::move(line));
+  }
 };
 
 /// {"translate": [3], "rotate": [3 degrees, about x, then y, then z] or {"axis", "angle"}, "scale"}
@@ -60,10 +67,12 @@ CameraPose parse_camera(JsonValue value);
 /// Dotted names or nested groups.
 void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters);
 
-/// Vertex number of a cloth, or the name of one of its grid's vertices.
+/// Vertex of a cloth by its number in the file, or by its name on a grid. kNone where no face uses
+/// the vertex.
 Index parse_vertex(JsonValue value, const LoadedCloth& cloth);
 
 /// Whole scene. `source` is the name for messages.
-Scene parse_scene(const nlohmann::json& json, const std::string& source, const SceneFolder& folder);
+Scene parse_scene(const nlohmann::json& json, const std::string& source, const SceneFolder& folder,
+                  SceneOrigin& origin);
 
 }  // namespace icloth

@@ -4,18 +4,45 @@
 
 namespace icloth {
 
-std::vector<NamedMesh> named_meshes(const Scene& scene, std::span<const Vec3f> positions) {
-  std::vector<NamedMesh> meshes;
+namespace {
+
+/// Positions of the vertices of a file: those of the vertices that stand for them, or the start.
+std::vector<Vec3f> expand(const FileLayout& layout, std::span<const Vec3f> simulated) {
+  std::vector<Vec3f> positions;
+  positions.reserve(layout.vertex.size());
+  for (std::size_t v = 0; v < layout.vertex.size(); ++v)
+    positions.push_back(layout.vertex[v] == kNone
+                            ? convert<float>(layout.positions[v])
+                            : simulated[static_cast<std::size_t>(layout.vertex[v])]);
+  return positions;
+}
+
+}  // namespace
+
+SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
+                         std::span<const FileLayout> layouts) {
+  SceneMeshes result;
   std::size_t first = 0;
-  const auto append = [&](const std::string& name, const TriangleMesh& mesh) {
-    const std::size_t count = mesh.positions.size();
-    meshes.push_back({name, positions.subspan(first, count), mesh.faces});
-    first += count;
+  const auto take = [&](const TriangleMesh& mesh) {
+    const auto part = positions.subspan(first, mesh.positions.size());
+    first += part.size();
+    return part;
   };
-  for (const Cloth& cloth : scene.cloths) append("cloth:" + cloth.name, cloth.mesh);
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const Cloth& cloth = scene.cloths[c];
+    const std::span<const Vec3f> simulated = take(cloth.mesh);
+    const std::string name = "cloth:" + cloth.name;
+    if (layouts.empty() || layouts[c].is_identity()) {
+      result.meshes.push_back({name, simulated, cloth.mesh.faces});
+    } else {
+      result.expanded.push_back(expand(layouts[c], simulated));
+      result.meshes.push_back({name, result.expanded.back(), layouts[c].faces});
+    }
+  }
   for (const Obstacle& obstacle : scene.obstacles)
-    append("obstacle:" + obstacle.name, obstacle.mesh);
-  return meshes;
+    result.meshes.push_back(
+        {"obstacle:" + obstacle.name, take(obstacle.mesh), obstacle.mesh.faces});
+  return result;
 }
 
 }  // namespace icloth

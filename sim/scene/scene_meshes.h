@@ -5,11 +5,21 @@
 #include <vector>
 
 #include "sim/files/mesh_io.h"
+#include "sim/files/weld.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {
 
-/// The objects of a scene, cloths first, at positions of all its vertices. Views into both.
-std::vector<NamedMesh> named_meshes(const Scene& scene, std::span<const Vec3f> positions);
+/// The objects of a scene as their files have them. Views into the scene, into the positions that
+/// were given, and into itself.
+struct SceneMeshes {
+  std::vector<NamedMesh> meshes;             ///< cloths first
+  std::vector<std::vector<Vec3f>> expanded;  ///< vertices of files that share a simulated one
+};
+
+/// `positions` are those of all simulated vertices, `layouts` those of the cloths; empty: the
+/// meshes of the scene are as in their files.
+SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
+                         std::span<const FileLayout> layouts = {});
 
 }  // namespace icloth

@@ -3,6 +3,7 @@
 #include "sim/files/body_io.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
+#include "sim/scene/cloth_mesh.h"
 #include "sim/scene/scene_json.h"
 
 namespace icloth {
@@ -50,6 +51,11 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   Placement place;
   if (object.has("transform")) place = parse_transform(object["transform"]);
   for (Vec3d& p : obstacle.mesh.positions) p = place(p);
+  if (mesh.json().is_string()) {
+    const std::string note =
+        unit_note("obstacle '" + obstacle.name + "'", obstacle.mesh.positions, place.scale, false);
+    if (!note.empty()) folder.note(note);
+  }
   if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
   obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);

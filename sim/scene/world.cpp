@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/files/error.h"
+#include "sim/files/mesh_io.h"
 
 namespace icloth {
 namespace {
@@ -223,6 +224,12 @@ void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
     while (end < half_edges.size() && half_edges[end].edge == half_edges[begin].edge) ++end;
     world.edge.push_back(half_edges[begin].edge);
     if (!cloth) continue;
+    if (end - begin > kMostFacesOnEdge)
+      throw InputError("cloth '" + cloth->name + "', edge between vertices " +
+                       std::to_string(half_edges[begin].edge[0] - object.first_vertex) + " and " +
+                       std::to_string(half_edges[begin].edge[1] - object.first_vertex) + ": " +
+                       std::to_string(end - begin) + " faces, expected at most " +
+                       std::to_string(kMostFacesOnEdge));
     double area = 0;
     for (std::size_t i = begin; i < end; ++i) {
       area += world.face_area[at(half_edges[i].face)];

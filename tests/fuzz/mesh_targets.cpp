@@ -28,7 +28,9 @@ std::string read(ParseMesh parse, std::string_view bytes, const std::string& nam
   require(end == faces, "every face in a group");
   if (!refusal([&] { check_cloth_mesh(file.mesh, name); }).empty()) return "";
   // A cloth: it can be a scene by itself, hung by its top.
-  const auto scene = load_scene(write_scratch(name, bytes), {});
+  // Its seams are welded before its edges are counted: that may still refuse it.
+  std::shared_ptr<const Scene> scene;
+  if (!refusal([&] { scene = load_scene(write_scratch(name, bytes), {}); }).empty()) return "";
   require(scene->cloths.size() == 1 && scene->cameras.size() == 1, "a cloth and a camera");
   require(!scene->cloths[0].pins.empty(), "a cloth that hangs");
   for (Index v : scene->cloths[0].pins)

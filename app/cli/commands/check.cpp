@@ -7,9 +7,25 @@
 #include "app/common/element_names.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/weld.h"
 
 namespace icloth {
 namespace {
+
+/// Makes one of the vertices of a group that lie at exactly the same place, as the cloths of a
+/// scene have them at their seams. Vertices of different groups stay apart. Returns how many there
+/// were.
+std::size_t weld_groups(MeshFile& file) {
+  std::vector<Vec3d> group_of(file.mesh.positions.size());
+  for (std::size_t g = 0; g < file.groups.size(); ++g) {
+    const MeshGroup& group = file.groups[g];
+    for (Index f = group.first_face; f < group.first_face + group.face_count; ++f)
+      for (const Index v : file.mesh.faces[static_cast<std::size_t>(f)])
+        group_of[static_cast<std::size_t>(v)].x = static_cast<double>(g);
+  }
+  FileLayout layout;
+  return merge_vertices(file.mesh, group_of, true, layout).welded;
+}
 
 /// All files in one list of vertices and faces, numbered on from file to file.
 struct Soup {
@@ -17,13 +33,14 @@ struct Soup {
   std::vector<Triangle> faces;
   std::vector<int> group;  // −1: obstacle
   ElementNames names{Scene{}};
+  std::size_t welded = 0;  ///< vertices at the place of another one of the same group
 
   /// Adds a file. With several files its path is part of the names.
   void add(const std::string& path, bool several) {
-    const MeshFile file = read_mesh(path);
+    MeshFile file = read_mesh(path);
     const auto first = static_cast<Index>(positions.size());
-
-    const auto& mesh = file.mesh;
+    TriangleMesh& mesh = file.mesh;
+    welded += weld_groups(file);
 
     // Indices are 32 bits, and the sum of all files must fit.
     if (positions.size() + mesh.positions.size() > (1u << 30) ||
@@ -63,6 +80,9 @@ int run_check(const CheckOptions& options) {
   for (std::size_t i = 0; i < std::min(pairs.size(), options.list); ++i)
     std::printf("%s\n", soup.names.pair(pairs[i]).c_str());
   if (pairs.size() > options.list) std::printf("… and %zu more\n", pairs.size() - options.list);
+  if (soup.welded > 0)
+    std::printf("vertices at the same place as another one of their group (taken as one) %zu\n",
+                soup.welded);
   std::printf("faces %zu, without area (not tested) %zu, intersecting pairs %zu\n",
               soup.faces.size(), soup.faces_without_area(), pairs.size());
   return pairs.empty() ? 0 : 1;

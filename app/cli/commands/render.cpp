@@ -166,7 +166,7 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene = load_scene(common.scene, scene_overrides(common));
+  job.scene = load_scene(common.scene, scene_overrides(common), {}, &job.origin);
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);

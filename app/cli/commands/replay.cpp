@@ -13,7 +13,7 @@ int run_replay(const ReplayOptions& options) {
   // The recording says which scene to run, on which build.
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
-  job.scene = load_scene(recording.scene, recording.overrides);
+  job.scene = load_scene(recording.scene, recording.overrides, {}, &job.origin);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
     if (build_name(build) == recording.build) job.build = build;

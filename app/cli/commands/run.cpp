@@ -58,7 +58,7 @@ int run_run(const RunOptions& options) {
 
   check(options);
   HeadlessJob job;
-  job.scene = load_scene(common.scene, scene_overrides(common));
+  job.scene = load_scene(common.scene, scene_overrides(common), {}, &job.origin);
 
   // The hands come from a recording or from the scene's script, and may be recorded again.
   Recording input, record;
@@ -94,7 +94,7 @@ int run_run(const RunOptions& options) {
     const bool last = stopped || step == job.steps;
     if (!frames.wants(step, last)) return;
     simulator.positions(positions);
-    frames.write(named_meshes(*job.scene, positions), step,
+    frames.write(named_meshes(*job.scene, positions, job.origin.layouts).meshes, step,
                  simulator.time(), last);
   };
 

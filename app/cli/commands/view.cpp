@@ -1,5 +1,6 @@
 #include "app/cli/commands/view.h"
 
+#include "app/common/headless.h"
 #include "app/window/viewer.h"
 #include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
@@ -13,7 +14,12 @@ int run_view(const ViewOptions& options) {
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + " is not available: " + reason);
 
-  Viewer viewer(options, build, load_scene(simulation.scene, scene_overrides(simulation)));
+  // The notes go to the terminal that the window was opened from.
+  SceneOrigin origin;
+  const std::shared_ptr<const Scene> scene =
+      load_scene(simulation.scene, scene_overrides(simulation), {}, &origin);
+  print_notes(origin);
+  Viewer viewer(options, build, scene);
   viewer.run();
   return 0;
 }

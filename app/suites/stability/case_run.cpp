@@ -76,7 +76,8 @@ void CaseRun::check_state() {
 void CaseRun::write_state() const {
   std::vector<Vec3f> positions;
   simulator_->positions(positions);
-  const std::vector<NamedMesh> meshes = named_meshes(simulator_->scene(), positions);
+  const SceneMeshes scene_meshes = named_meshes(simulator_->scene(), positions);
+  const std::vector<NamedMesh>& meshes = scene_meshes.meshes;
   const std::size_t cloths = simulator_->scene().cloths.size();
 
   // The file's name is that of the case with the number of the state.

@@ -59,12 +59,13 @@ void bad_vertices(CaseRun& run) {
     auto scene = new_scene("bad vertices", 0.03);
     scene->cloths = {cloth_of(std::move(x), std::move(faces))};
     run.require_input_error([&] { make_simulator(run.settings().build, scene); }, {element});
-    // Elements of files are counted from one, as editors do.
-    run.require_input_error([&] { check_cloth_mesh(scene->cloths[0].mesh, "mesh"); }, {in_file});
+    if (in_file)
+      run.require_input_error([&] { check_cloth_mesh(scene->cloths[0].mesh, "mesh"); }, {in_file});
   };
 
-  // Each mesh has one fault, which the message must name.
-  refused(square, {{0, 1, 2}}, "vertex 3", "vertex");
+  // Each mesh has one fault, which the message must name. Where a file is read, a vertex without a
+  // face is left out when the mesh is made a cloth.
+  refused(square, {{0, 1, 2}}, "vertex 3", nullptr);
   refused(square, {{0, 1, 2}, {0, 2, 2}, {0, 2, 3}}, "face 1", "triangle");
   refused({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 3}, {0, 1, 2}}, "face 1",
           "triangle");

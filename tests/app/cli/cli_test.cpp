@@ -251,12 +251,9 @@ TEST_F(Cli, AFullDiskIsNoticedAndLeavesNoCutOffFile) {
   fs::create_symlink("/dev/full", folder_ / "full.csv");
   fs::create_symlink("/dev/full", folder_ / "full.json");
   fs::create_symlink("/dev/full", folder_ / "full.png");
-  write(
-      "queries.csv", "vf" + [] {
-        std::string zeros;
-        for (int i = 0; i < 24; ++i) zeros += "," + std::to_string(i % 5);
-        return zeros + "\n";
-      }());
+  std::string query = "vf";
+  for (int i = 0; i < 24; ++i) query.append(",").append(std::to_string(i % 5));
+  write("queries.csv", query + "\n");
   const std::size_t before = files();
   for (const char* arguments : {
            "run scarf --dump-config > /dev/full",
@@ -295,6 +292,25 @@ TEST_F(Cli, FramesThatNoLongerFitEndTheRun) {
       << message;
   EXPECT_EQ(count_lines(message), 1u) << message;
   EXPECT_TRUE(fs::is_empty(folder_ / "f"));
+}
+
+TEST_F(Cli, NotesAboutAMeshAreToldOnce) {
+  write("sheet.obj",
+        "v 0 0 0\nv 50 0 0\nv 50 50 0\nv 9 9 9\nv 0 50 0\nv 50 0 0\nv 90 0 0\nv 50 50 0\n"
+        "f 1 2 3 5\nf 6 7 8\n");
+  const Outcome run = icloth("run sheet.obj --device cpu --steps 1 --out f --export obj");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(count_lines(run.err), 3u) << run.err;
+  EXPECT_TRUE(contains(run.err, "icloth: note: cloth 'sheet': 1 of 8 vertices belong to no face"));
+  EXPECT_TRUE(contains(run.err, "2 of 8 vertices lie at the same place")) << run.err;
+  EXPECT_TRUE(contains(run.err, "is 90 m large")) << run.err;
+  const std::string last = read(folder_ / "f" / "last.obj");
+  EXPECT_TRUE(contains(last, "\nv 9 9 9\n")) << last;
+  EXPECT_TRUE(contains(last, "\nf 6 7 8\n")) << last;
+  const Outcome check = icloth("check f/last.obj");
+  EXPECT_EQ(check.code, 0) << check.out;
+  EXPECT_TRUE(contains(check.out, "(taken as one) 2\n")) << check.out;
+  EXPECT_EQ(icloth("run sheet.obj --device cpu --steps 1 --quiet").err, "");
 }
 
 TEST_F(Cli, DurationAndTimeGiveTheSteps) {
