@@ -1,177 +1,115 @@
 #include "sim/scene/repair.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
+#include <limits>
 #include <vector>
 
 #include "sim/scene/intersections.h"
+#include "sim/scene/repair_moves.h"
 
 namespace icloth {
 namespace {
 
-constexpr int kMostSweeps = 100;
-constexpr int kPatience = 15;        ///< sweeps without fewer pairs
-constexpr double kRelaxation = 0.6;  ///< neighbours push too, so a whole correction overshoots
+constexpr int kMostRounds = 4;   ///< looks for contours
+constexpr int kPatience = 3;     ///< passes without much less that is missing
+constexpr int kMostPasses = 12;  ///< moves, each with the constraints of the positions before
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// Cloths and obstacles as one list.
-struct Soup {
-  std::vector<Vec3d> positions, start;
-  std::vector<Triangle> faces;
-  std::vector<int> group;          ///< of faces; −1: obstacle
-  std::vector<std::uint8_t> free;  ///< of vertices
-
-  explicit Soup(const Scene& scene) {
-    for (const Cloth& cloth : scene.cloths) {
-      const std::size_t first = positions.size();
-      add(cloth.mesh.positions, cloth.mesh.faces, 0);
-      for (const Index pin : cloth.pins) free[first + at(pin)] = 0;
-    }
-    std::vector<Vec3d> pose;
-    for (const Obstacle& obstacle : scene.obstacles) {
-      obstacle.pose(0.0, pose);
-      add(pose, obstacle.mesh.faces, -1);
-    }
-    start = positions;
-  }
-
-  void add(const std::vector<Vec3d>& x, const std::vector<Triangle>& triangles, int number) {
-    const auto first = static_cast<Index>(positions.size());
-    positions.insert(positions.end(), x.begin(), x.end());
-    free.resize(positions.size(), number < 0 ? 0 : 1);
-    for (const Triangle& t : triangles) faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-    group.resize(faces.size(), number);
-  }
-};
-
-/// Where an edge goes through a face.
-struct Piercing {
-  double s;                       ///< place on the edge, 0 … 1
-  std::array<double, 3> weights;  ///< barycentric, of the face
-  Vec3d normal;                   ///< unit
-  double first, second;           ///< signed heights of the edge's ends over the face [m]
-};
-
-std::optional<Piercing> pierce(const Vec3d& a, const Vec3d& b, const std::array<Vec3d, 3>& face) {
-  const Vec3d n = cross(face[1] - face[0], face[2] - face[0]);
-  const double area2 = norm(n);
-  if (!(area2 > 0)) return {};
-  Piercing p{};
-  p.normal = (1 / area2) * n;
-  p.first = dot(p.normal, a - face[0]);
-  p.second = dot(p.normal, b - face[0]);
-  if ((p.first > 0) == (p.second > 0)) return {};
-  p.s = p.first / (p.first - p.second);
-  const Vec3d point = a + p.s * (b - a);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3d side = cross(face[(k + 2) % 3] - face[(k + 1) % 3], point - face[(k + 1) % 3]);
-    p.weights[k] = dot(p.normal, side) / area2;
-    if (p.weights[k] < 0) return {};
-  }
-  return p;
+std::vector<IntersectingFaces> intersections(const RepairMesh& mesh) {
+  return find_intersections(mesh.x, mesh.faces, mesh.group);
 }
 
-/// Collects what the pairs ask for; a vertex goes by the mean of it.
-class Sweep {
- public:
-  Sweep(Soup& soup, double offset)
-      : soup_(soup), offset_(offset), sum_(soup.positions.size()), count_(soup.positions.size()) {}
+/// Adds the contours of the present positions that are not yet among those found before.
+bool add_contours(const RepairMesh& mesh, std::span<const IntersectingFaces> pairs, double limit,
+                  std::vector<SidedContour>& known) {
+  std::vector<Contour> contours = trace_contours(mesh, pairs);
+  std::vector<Side> sides = choose_sides(mesh, contours, limit);
 
-  void separate(Index f, Index g) {
-    push_edges(f, g);
-    push_edges(g, f);
+  // What is left of a contour that has a side is no new one.
+  std::vector<std::pair<Index, Index>> seen;
+  for (const SidedContour& old : known)
+    for (const Contour::Segment& s : old.contour.segments) seen.emplace_back(s.own, s.other);
+  std::ranges::sort(seen);
+  const auto is_known = [&](const Contour::Segment& s) {
+    return std::ranges::binary_search(seen, std::pair{s.own, s.other});
+  };
+
+  bool added = false;
+  const std::size_t first = known.size();
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    const bool old = std::ranges::any_of(contours[c].segments, is_known);
+    if (old) sides[c] = {};
+    added = added || sides[c].sign != 0;
+    contours[c].twin += first;
+    known.push_back({std::move(contours[c]), std::move(sides[c])});
   }
+  return added;
+}
 
-  void apply(double limit) {
-    for (std::size_t i = 0; i < sum_.size(); ++i) {
-      if (count_[i] == 0) continue;
-      Vec3d to = soup_.positions[i] + (kRelaxation / count_[i]) * sum_[i];
-      const Vec3d way = to - soup_.start[i];
-      if (norm(way) > limit) to = soup_.start[i] + (limit / norm(way)) * way;
-      soup_.positions[i] = to;
-    }
+double deepest(std::span<const SidedContour> contours) {
+  double depth = 0;
+  for (const SidedContour& c : contours) depth = std::max(depth, c.side.depth);
+  return depth;
+}
+
+/// Moves vertices until all constraints hold at the positions to which they lead.
+void move_apart(RepairMesh& mesh, std::span<const SidedContour> contours, double offset,
+                double limit, bool parted) {
+  double least = std::numeric_limits<double>::infinity();
+  int waited = 0;
+  for (int pass = 0; pass < kMostPasses && waited < kPatience; ++pass) {
+    const std::vector<GapConstraint> constraints =
+        collect_constraints(mesh, contours, offset, parted);
+    double missing = 0;
+    for (const GapConstraint& c : constraints)
+      missing = std::max(missing, c.target - gap_of(mesh, c));
+    if (missing < 0.05 * offset) return;
+    waited = missing < 0.8 * least ? 0 : waited + 1;
+    least = std::min(least, missing);
+    move_vertices(mesh, constraints, limit, 0.01 * offset);
   }
-
- private:
-  /// The edges of face f against face g.
-  void push_edges(Index f, Index g) {
-    const Triangle& edges = soup_.faces[at(f)];
-    const Triangle& face = soup_.faces[at(g)];
-    const std::array<Vec3d, 3> corners{x(face[0]), x(face[1]), x(face[2])};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = edges[k], b = edges[(k + 1) % 3];
-      const auto p = pierce(x(a), x(b), corners);
-      if (!p) continue;
-      // Out of a body is where its normals point; between cloths the shallower end goes back.
-      const bool back_first =
-          soup_.group[at(g)] < 0 ? p->first < 0 : std::fabs(p->first) <= std::fabs(p->second);
-      const Index moved = back_first ? a : b;
-      const double height = back_first ? p->first : p->second;
-      const double side = height > 0 ? -1 : 1;
-      push(moved, face, p->weights, side * p->normal, std::fabs(height) + 1.5 * offset_);
-    }
-  }
-
-  /// Vertex and face apart by `depth` along n, shared by how they can move.
-  void push(Index v, const Triangle& face, const std::array<double, 3>& w, Vec3d n, double depth) {
-    double mobility = soup_.free[at(v)];
-    for (std::size_t k = 0; k < 3; ++k) mobility += w[k] * w[k] * soup_.free[at(face[k])];
-    if (!(mobility > 0)) return;
-    add(v, (depth / mobility) * n);
-    for (std::size_t k = 0; k < 3; ++k) add(face[k], (-w[k] * depth / mobility) * n);
-  }
-
-  void add(Index v, Vec3d move) {
-    if (soup_.free[at(v)] == 0) return;
-    sum_[at(v)] += move;
-    ++count_[at(v)];
-  }
-  const Vec3d& x(Index v) const { return soup_.positions[at(v)]; }
-
-  Soup& soup_;
-  double offset_;
-  std::vector<Vec3d> sum_;
-  std::vector<int> count_;
-};
-
-/// Single precision is what most builds compute in.
-std::vector<IntersectingFaces> intersections(const Soup& soup) {
-  std::vector<Vec3d> rounded;
-  rounded.reserve(soup.positions.size());
-  for (const Vec3d& p : soup.positions) rounded.push_back(convert<double>(convert<float>(p)));
-  return find_intersections(rounded, soup.faces, soup.group);
 }
 
 }  // namespace
 
 StartRepair repair_start(Scene& scene, double limit) {
-  Soup soup(scene);
+  RepairMesh mesh(scene);
+  const double offset = scene.parameters.impact_zones.offset;
   StartRepair result;
-  std::vector<IntersectingFaces> pairs = intersections(soup);
-  result.pairs_before = pairs.size();
-  std::size_t fewest = pairs.size();
-  int waited = 0;
-  for (int sweep = 0; sweep < kMostSweeps && !pairs.empty() && waited < kPatience; ++sweep) {
-    Sweep moves(soup, scene.parameters.impact_zones.offset);
-    for (const IntersectingFaces& pair : pairs) moves.separate(pair.a, pair.b);
-    moves.apply(limit);
-    pairs = intersections(soup);
-    waited = pairs.size() < fewest ? 0 : waited + 1;
-    fewest = std::min(fewest, pairs.size());
+  std::vector<IntersectingFaces> pairs = intersections(mesh);
+  result.pairs_before = result.pairs_left = pairs.size();
+
+  // Contours that appear because of the moves are taken up in the next round. Such ones must not
+  // lead deeper than what the moves were made for.
+  double depth_limit = limit;
+  std::vector<SidedContour> contours;
+  std::vector<Vec3d> best = mesh.x;
+  for (int round = 0; round < kMostRounds && !pairs.empty(); ++round) {
+    if (!add_contours(mesh, pairs, depth_limit, contours)) break;
+    if (round == 0) depth_limit = std::min(limit, 2 * deepest(contours));
+    move_apart(mesh, contours, offset, limit, false);
+    pairs = intersections(mesh);
+    if (pairs.size() >= result.pairs_left) continue;
+    result.pairs_left = pairs.size();
+    best = mesh.x;
   }
-  result.pairs_left = pairs.size();
-  std::size_t first = 0;
-  for (Cloth& cloth : scene.cloths) {
+
+  // Room for the first step also where a border lies beside the other sheet.
+  if (result.pairs_left == 0 && result.pairs_before > 0) {
+    move_apart(mesh, contours, offset, limit, true);
+    if (!intersections(mesh).empty()) mesh.x = best;
+    best = mesh.x;
+  }
+
+  // Vertices that were not moved keep their digits.
+  std::size_t next = 0;
+  for (Cloth& cloth : scene.cloths)
     for (Vec3d& p : cloth.mesh.positions) {
-      const double move = norm(soup.positions[first] - p);
-      result.moved += move > 0 ? 1 : 0;
-      result.largest_move = std::max(result.largest_move, move);
-      p = soup.positions[first++];
+      const Vec3d from = mesh.start[next], to = best[next++];
+      if (from == to) continue;
+      ++result.moved;
+      result.largest_move = std::max(result.largest_move, norm(to - from));
+      p = to;
     }
-  }
   scene.repair = result;
   return result;
 }

@@ -1,0 +1,98 @@
+// Boxes in a binary tree: which of many small boxes overlap a given one?
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "kernels/vec.h"
+
+namespace icloth {
+
+/// Box along the axes; the empty one holds nothing and overlaps nothing.
+struct Box {
+  Vec3d low, high;
+
+  static Box empty() {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    return {{inf, inf, inf}, {-inf, -inf, -inf}};
+  }
+  void add(const Box& b) {
+    low = {std::min(low.x, b.low.x), std::min(low.y, b.low.y), std::min(low.z, b.low.z)};
+    high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y), std::max(high.z, b.high.z)};
+  }
+  void add(Vec3d p) { add(Box{p, p}); }
+  /// The same box, larger by `reach` on every side.
+  Box grown(double reach) const {
+    const Vec3d r{reach, reach, reach};
+    return {low - r, high + r};
+  }
+  bool overlaps(const Box& b) const {
+    return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y &&
+           low.z <= b.high.z && b.low.z <= high.z;
+  }
+};
+
+/// Boxes in a binary tree, split at the median; nodes in depth-first order. Refers to the boxes
+/// that it was made of.
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), Index{0});
+    if (!boxes.empty()) build(0, static_cast<Index>(boxes.size()));
+  }
+
+  /// Calls visit(i) for every box i that overlaps `query`.
+  template <class Visit>
+  void visit(const Box& query, const Visit& visit_box) const {
+    for (std::size_t n = 0; n < nodes_.size();) {
+      const Node& node = nodes_[n];
+      if (!node.box.overlaps(query)) {
+        n = at(node.skip);
+        continue;
+      }
+      for (Index i = node.first; i < node.first + node.count; ++i)
+        if (boxes_[at(order_[at(i)])].overlaps(query)) visit_box(order_[at(i)]);
+      ++n;
+    }
+  }
+
+ private:
+  static constexpr Index kLeafSize = 4;
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  struct Node {
+    Box box;
+    Index first = 0, count = 0;  // range in order_ of a leaf, empty otherwise
+    Index skip = 0;              // next node when this one is not entered
+  };
+
+  void build(Index begin, Index end) {
+    const std::size_t n = nodes_.size();
+    nodes_.push_back({Box::empty(), begin, end - begin <= kLeafSize ? end - begin : 0, 0});
+    for (Index i = begin; i < end; ++i) nodes_[n].box.add(boxes_[at(order_[at(i)])]);
+    if (end - begin > kLeafSize) {
+      const Vec3d size = nodes_[n].box.high - nodes_[n].box.low;
+      const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
+                        : size.y >= size.z                   ? &Vec3d::y
+                                                             : &Vec3d::z;
+      const Index middle = begin + (end - begin) / 2;
+      std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                       [&](Index a, Index b) {
+                         const Box &s = boxes_[at(a)], &t = boxes_[at(b)];
+                         return s.low.*axis + s.high.*axis < t.low.*axis + t.high.*axis;
+                       });
+      build(begin, middle);
+      build(middle, end);
+    }
+    nodes_[n].skip = static_cast<Index>(nodes_.size());
+  }
+
+  std::span<const Box> boxes_;
+  std::vector<Index> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace icloth
