@@ -170,7 +170,7 @@ void BroadPhase::prepare(SubstepContext& step) {
 }
 
 void BroadPhase::cover_candidate(SubstepContext& step) {
-  if (step.state.trusted_complete && covers(step, false, Real(0))) return;
+  if (current_ && step.state.trusted_complete && covers(step, false, Real(0))) return;
   make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }
