@@ -195,7 +195,7 @@ TEST(BroadPhase, KeepsTheListsWhileTheMotionStaysInTheBoxes) {
   stage.set_end(end);
   broad_phase.cover_candidate(step);
   EXPECT_EQ(lists_made(), 2);
-  broad_phase.invalidate();
+  broad_phase.invalidate(stage.state);
   broad_phase.cover_candidate(step);
   EXPECT_EQ(lists_made(), 3);
   profile_enable(false);
