@@ -27,7 +27,7 @@ struct GoldenScene {
   const char* triangles;  ///< of all of its cloths together
 };
 constexpr GoldenScene kScenes[] = {{"scarf", "600"},  {"sphere", "900"}, {"twisting", "600"},
-                                   {"funnel", "900"}, {"drape", "500"},  {"flag", "500"}};
+                                   {"funnel", "450"}, {"drape", "300"},  {"flag", "500"}};
 
 std::string golden_file() { return std::string(ICLOTH_TEST_FOLDER) + "/goldens/hashes.txt"; }
 
