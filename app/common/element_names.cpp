@@ -58,14 +58,30 @@ std::string ElementNames::pair(const IntersectingFaces& pair) const {
   return face(pair.a) + " — " + face(pair.b);
 }
 
+std::string ElementNames::touch(const Touch& touch) const {
+  const std::span<const Index> v = touch.v;
+  const std::string first = vertices(v.first(1));
+  switch (touch.kind) {
+    case Touch::Kind::vertex_vertex:
+      return "vertex " + first + " lies on vertex " + vertices(v.subspan(1, 1));
+    case Touch::Kind::vertex_edge:
+      return "vertex " + first + " lies on edge " + vertices(v.subspan(1, 2));
+    case Touch::Kind::vertex_face:
+      return "vertex " + first + " lies on face " + vertices(v.last(3));
+    case Touch::Kind::edge_edge:
+      break;
+  }
+  return "edge " + vertices(v.first(2)) + " touches edge " + vertices(v.last(2));
+}
+
 std::string ElementNames::pair(const OffendingPair& pair) const {
   const std::span<const Index> v = pair.vertices;
   if (pair.edge_edge) return "edge " + vertices(v.first(2)) + " — edge " + vertices(v.last(2));
   return "vertex " + vertices(v.first(1)) + " — face " + vertices(v.last(3));
 }
 
-bool report_start_intersections(const Scene& scene, bool single_precision,
-                                std::span<const FileLayout> layouts) {
+int report_start_intersections(const Scene& scene, bool single_precision,
+                               std::span<const FileLayout> layouts) {
   constexpr std::size_t shown = 10;
 
   // A repair that was asked for tells how much it changed.
@@ -78,15 +94,32 @@ bool report_start_intersections(const Scene& scene, bool single_precision,
         1e3 * scene.repair->largest_move);
 
   // The remaining pairs are listed by name, up to a limit.
-  const auto pairs = find_start_intersections(scene, single_precision);
-  if (pairs.empty()) return false;
+  const auto [pairs, touches] = find_start_conflicts(scene, single_precision);
   const ElementNames names(scene, layouts);
-  std::fprintf(stderr, "icloth: scene '%s' starts with %zu pairs of faces that intersect:\n",
-               scene.name.c_str(), pairs.size());
-  for (std::size_t i = 0; i < std::min(pairs.size(), shown); ++i)
-    std::fprintf(stderr, "  %s\n", names.pair(pairs[i]).c_str());
-  if (pairs.size() > shown) std::fprintf(stderr, "  … and %zu more\n", pairs.size() - shown);
-  return true;
+  const auto list = [&](const char* what, const auto& conflicts, const auto& name) {
+    if (conflicts.empty()) return;
+    std::fprintf(stderr, "icloth: scene '%s' starts with %zu %s:\n", scene.name.c_str(),
+                 conflicts.size(), what);
+    for (std::size_t i = 0; i < std::min(conflicts.size(), shown); ++i)
+      std::fprintf(stderr, "  %s\n", name(conflicts[i]).c_str());
+    if (conflicts.size() > shown)
+      std::fprintf(stderr, "  … and %zu more\n", conflicts.size() - shown);
+  };
+  list("pairs of faces that intersect", pairs,
+       [&](const IntersectingFaces& pair) { return names.pair(pair); });
+  list("places where neighbouring faces touch beside their common vertices", touches,
+       [&](const Touch& touch) { return names.touch(touch); });
+
+  // Two of the causes have a remedy that can be named.
+  const auto of_kind = [&](Touch::Kind kind) {
+    return std::ranges::any_of(touches, [&](const Touch& t) { return t.kind == kind; });
+  };
+  if (of_kind(Touch::Kind::vertex_edge))
+    std::fprintf(stderr, "  A vertex on an edge has to be a vertex of the faces on both sides.\n");
+  if (of_kind(Touch::Kind::vertex_vertex))
+    std::fprintf(stderr, "  Vertices at one place are joined by \"weld\" in the scene file.\n");
+  if (!pairs.empty()) return 1;
+  return touches.empty() ? 0 : 2;
 }
 
 }  // namespace icloth

@@ -24,6 +24,7 @@ class ElementNames {
   std::string face(Index global) const;                   ///< "cloth:NAME face 12"
   std::string vertex(Index global) const;                 ///< "cloth:NAME vertex 7"
   std::string pair(const IntersectingFaces& pair) const;  ///< "… face a — … face b"
+  std::string touch(const Touch& touch) const;            ///< "vertex … 8 lies on edge … 2 3"
   std::string pair(const OffendingPair& pair) const;      ///< "… vertex 1 — face of … 2 3 4"
 
  private:
@@ -41,9 +42,10 @@ class ElementNames {
   Index vertices_ = 0, faces_ = 0;
 };
 
-/// Prints the start intersections of a scene to stderr, the first ten by name. Returns true when
-/// there are some; nothing may be simulated then.
-bool report_start_intersections(const Scene& scene, bool single_precision,
-                                std::span<const FileLayout> layouts = {});
+/// Prints what intersects or touches in the start state of a scene to stderr, the first ten by
+/// name. 0: nothing. Otherwise nothing may be simulated, and the number is an exit code: 1 where
+/// faces intersect, 2 where only neighbouring faces touch, which is the fault of a mesh.
+int report_start_intersections(const Scene& scene, bool single_precision,
+                               std::span<const FileLayout> layouts = {});
 
 }  // namespace icloth

@@ -80,8 +80,9 @@ HeadlessResult run_headless(const HeadlessJob& job) {
   if (!job.quiet) print_notes(job.origin);
 
   // A start state that intersects is refused.
-  result.start_refused =
+  result.start_exit_code =
       report_start_intersections(*job.scene, job.build != Build::cpu64, job.origin.layouts);
+  result.start_refused = result.start_exit_code != 0;
   if (result.start_refused) return result;
 
   const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);

@@ -30,6 +30,7 @@ struct HeadlessResult {
   std::size_t penetrations = 0;     ///< pairs of faces that intersect in the final state
   std::uint64_t state_hash = 0;     ///< of the final state
   bool start_refused = false;       ///< the start state intersects; nothing was simulated
+  int start_exit_code = 0;          ///< of a refused start: 1, or 2 where only the mesh is at fault
 
   bool clean() const { return refused.empty() && penetrations == 0 && !start_refused; }
 };

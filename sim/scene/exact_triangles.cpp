@@ -132,7 +132,7 @@ bool overlap(double a, double b, double c, double d) {
 }
 
 /// Segments a b and c d in one plane.
-bool segments_meet(Vec3d a, Vec3d b, Vec3d c, Vec3d d, int axis) {
+bool segments_meet_in_plane(Vec3d a, Vec3d b, Vec3d c, Vec3d d, int axis) {
   const int abc = side_in_plane(a, b, c, axis), abd = side_in_plane(a, b, d, axis);
   const int cda = side_in_plane(c, d, a, axis), cdb = side_in_plane(c, d, b, axis);
   if (abc == 0 && abd == 0 && cda == 0 && cdb == 0) {  // on one line
@@ -156,7 +156,7 @@ bool contains(const FaceCorners& t, Vec3d p, int axis) {
 
 bool meet_in_plane(Vec3d p, Vec3d q, const FaceCorners& t, int axis) {
   for (std::size_t k = 0; k < 3; ++k)
-    if (segments_meet(p, q, t[k], t[(k + 1) % 3], axis)) return true;
+    if (segments_meet_in_plane(p, q, t[k], t[(k + 1) % 3], axis)) return true;
   return contains(t, p, axis);
 }
 
@@ -226,6 +226,24 @@ bool triangles_meet(const FaceCorners& s, const FaceCorners& t) {
   if (s_axis < 0 || t_axis < 0) return false;
   // What they have in common ends where an edge of one meets the other.
   return edges_meet(s, t, t_axis) || edges_meet(t, s, s_axis);
+}
+
+bool point_meets(Vec3d p, const FaceCorners& t) {
+  // Seen along an axis first: that costs less, and most points lie beside the triangle.
+  const int axis = axis_of(t);
+  return axis >= 0 && contains(t, p, axis) && exact_side(t[0], t[1], t[2], p) == 0;
+}
+
+bool segments_meet(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+  // Points of two segments that meet lie in one plane.
+  for (int axis = 0; axis < 3; ++axis)
+    if (!overlap(component(a, axis), component(b, axis), component(c, axis), component(d, axis)))
+      return false;
+
+  // Along every axis they have to meet; along one that is not in their plane that is enough.
+  for (int axis = 0; axis < 3; ++axis)
+    if (!segments_meet_in_plane(a, b, c, d, axis)) return false;
+  return exact_side(a, b, c, d) == 0;
 }
 
 }  // namespace icloth

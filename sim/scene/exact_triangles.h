@@ -20,4 +20,10 @@ int exact_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d);
 /// meet nothing.
 bool triangles_meet(const FaceCorners& s, const FaceCorners& t);
 
+/// True when the point lies in the closed triangle, exactly.
+bool point_meets(Vec3d p, const FaceCorners& t);
+
+/// True when the closed segments a b and c d have a point in common, exactly.
+bool segments_meet(Vec3d a, Vec3d b, Vec3d c, Vec3d d);
+
 }  // namespace icloth

@@ -105,19 +105,26 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
   return found;
 }
 
-std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision) {
+StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {
   std::vector<Vec3d> positions;
   std::vector<Triangle> faces;
   std::vector<int> group;
+  std::vector<std::uint8_t> held;
   const auto append = [&](const TriangleMesh& mesh, const std::vector<Vec3d>& pose, int number) {
     const auto first = static_cast<Index>(positions.size());
     positions.insert(positions.end(), pose.begin(), pose.end());
     for (const Triangle& t : mesh.faces)
       faces.push_back({t[0] + first, t[1] + first, t[2] + first});
     group.resize(faces.size(), number);
+    held.resize(positions.size(), static_cast<std::uint8_t>(number < 0));
   };
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+
+  // Cloths first, then obstacles where they are at time 0.
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const std::size_t first = positions.size();
     append(scene.cloths[c].mesh, scene.cloths[c].mesh.positions, static_cast<int>(c));
+    for (const Index pin : scene.cloths[c].pins) held[first + at(pin)] = 1;
+  }
   std::vector<Vec3d> pose;
   for (const Obstacle& obstacle : scene.obstacles) {
     obstacle.pose(0.0, pose);
@@ -125,7 +132,25 @@ std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool
   }
   if (single_precision)
     for (Vec3d& p : positions) p = convert<double>(convert<float>(p));
-  return find_intersections(positions, faces, group);
+
+  // The collision test leaves out neighbours that are held altogether, since they never move.
+  StartConflicts conflicts{find_intersections(positions, faces, group),
+                           find_touching_neighbours(positions, faces, group)};
+  std::erase_if(conflicts.touches, [&](const Touch& touch) {
+    return std::ranges::all_of(touch.v, [&](Index v) { return v < 0 || held[at(v)] != 0; });
+  });
+  return conflicts;
+}
+
+std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision) {
+  StartConflicts conflicts = find_start_conflicts(scene, single_precision);
+  std::vector<IntersectingFaces>& pairs = conflicts.pairs;
+  for (const Touch& touch : conflicts.touches) pairs.push_back({touch.a, touch.b});
+  const auto key = [](const IntersectingFaces& p) { return std::pair(p.a, p.b); };
+  std::ranges::sort(pairs, {}, key);
+  const auto rest = std::ranges::unique(pairs, {}, key);
+  pairs.erase(rest.begin(), rest.end());
+  return pairs;
 }
 
 }  // namespace icloth

@@ -6,6 +6,7 @@
 
 #include "sim/files/mesh.h"
 #include "sim/scene/scene.h"
+#include "sim/scene/touching.h"
 
 namespace icloth {
 
@@ -20,8 +21,15 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
                                                   std::span<const Triangle> faces,
                                                   std::span<const int> group);
 
-/// Intersections of a scene's start state, rounded to single precision when `single_precision`;
-/// face numbers count cloths in scene order, then obstacles. Obstacle pairs are left out.
+/// What keeps a scene from being simulated from its start state, rounded to single precision when
+/// `single_precision`. Numbers count cloths in scene order, then obstacles.
+struct StartConflicts {
+  std::vector<IntersectingFaces> pairs;  ///< faces without a common vertex that touch or cross
+  std::vector<Touch> touches;            ///< of neighbouring faces, with a vertex that can move
+};
+StartConflicts find_start_conflicts(const Scene& scene, bool single_precision);
+
+/// All pairs of faces of the conflicts, neighbours included, sorted.
 std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision);
 
 }  // namespace icloth

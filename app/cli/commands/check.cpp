@@ -85,7 +85,15 @@ int run_check(const CheckOptions& options) {
                 soup.welded);
   std::printf("faces %zu, without area (not tested) %zu, intersecting pairs %zu\n",
               soup.faces.size(), soup.faces_without_area(), pairs.size());
-  return pairs.empty() ? 0 : 1;
+
+  // Neighbours are told apart, since other programs do not test them.
+  const auto touches = find_touching_neighbours(soup.positions, soup.faces, soup.group);
+  if (touches.empty()) return pairs.empty() ? 0 : 1;
+  for (std::size_t i = 0; i < std::min(touches.size(), options.list); ++i)
+    std::printf("%s\n", soup.names.touch(touches[i]).c_str());
+  std::printf("neighbouring faces that touch beside their common vertices: %zu places\n",
+              touches.size());
+  return 1;
 }
 
 }  // namespace icloth

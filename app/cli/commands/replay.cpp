@@ -39,7 +39,7 @@ int run_replay(const ReplayOptions& options) {
   };
 
   const HeadlessResult result = run_headless(job);
-  if (result.start_refused) return 1;
+  if (result.start_refused) return result.start_exit_code;
   stats.finish(result.statistics);
   if (!options.quiet)
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);

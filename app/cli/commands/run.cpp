@@ -102,7 +102,7 @@ int run_run(const RunOptions& options) {
   profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
   profile_enable(false);
-  if (result.start_refused) return 1;
+  if (result.start_refused) return result.start_exit_code;
 
   // The outputs at its end; a failure tells how to repeat it.
   stats.finish(result.statistics);
