@@ -7,6 +7,10 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+/// Tension that contacts hold over a sharp edge however fine the mesh is: the weight of half a
+/// metre of cloth of 200 g/m² that hangs down from it [N/m].
+constexpr double kLineLoad = 1;
+
 /// What both kinds of pair need to know; the part that does not depend on the kind.
 struct ContactMaker {
   View<const Vec3r> x, v, rest;
@@ -17,6 +21,7 @@ struct ContactMaker {
   Vec3r fall_speed;  ///< gravity · dt [m/s]
   Real friction_cloth, friction_obstacle;
   View<const Real> own_friction;  ///< −1: none (objects), empty: none has one
+  Real line_area;                 ///< kLineLoad / (k h) [m], see carrying_area
 
   /// Corners 0 and 2 are of the two elements, VF or EE; an obstacle's, if any, may be either.
   ICLOTH_HD Real coefficient(const Stencil& s, bool on_obstacle) const {
@@ -29,6 +34,14 @@ struct ContactMaker {
     }
     if (first >= 0 && second >= 0) return std::sqrt(first * second);
     return first >= 0 ? first : (second >= 0 ? second : usual);
+  }
+
+  /// Cloth under tension that is bent over a sharp edge lies on it with one row of features, each
+  /// about √a wide: it carries up to k a h / √a for each metre of the edge. Where that is less than
+  /// kLineLoad, as with fine meshes, the pair counts as if its features were larger: tension would
+  /// pull the cloth through the thickness and leave the edge to the impact zones.
+  ICLOTH_HD Real carrying_area(Real area) const {
+    return std::fmax(area, line_area * std::sqrt(area));
   }
 
   ICLOTH_HD bool boxes_apart(const Index* p, int np, const Index* q, int nq) const {
@@ -112,7 +125,8 @@ struct FindVertexFace {
     c.key = pair_key(false, pair);
     c.s = {{pair.a, f.v[0], f.v[1], f.v[2]},
            {Real(1), -closest.w[0], -closest.w[1], -closest.w[2]}};
-    c.area = pair.a < maker.cloth_vertices ? vertex_area[pair.a] : face_area[pair.b];
+    c.area = maker.carrying_area(pair.a < maker.cloth_vertices ? vertex_area[pair.a]
+                                                               : face_area[pair.b]);
     const Vec3r corner = maker.x[f.v[0]];
     if (maker.make(c, cross(maker.x[f.v[1]] - corner, maker.x[f.v[2]] - corner))) emit(c);
   }
@@ -137,7 +151,8 @@ struct FindEdgeEdge {
     c.s = {{p.v[0], p.v[1], q.v[0], q.v[1]},
            {-(1 - closest.s), -closest.s, 1 - closest.t, closest.t}};
     const Real area = edge_area[pair.a];  // the smaller number is a cloth edge
-    c.area = pair.b < edge_area.size() ? std::fmin(area, edge_area[pair.b]) : area;
+    c.area =
+        maker.carrying_area(pair.b < edge_area.size() ? std::fmin(area, edge_area[pair.b]) : area);
     const Vec3r along_p = maker.x[p.v[1]] - maker.x[p.v[0]];
     const Vec3r along_q = maker.x[q.v[1]] - maker.x[q.v[0]];
     const Vec3r across = cross(along_p, along_q);
@@ -286,7 +301,8 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
                            .fall_speed = step.dt * step.gravity(),
                            .friction_cloth = static_cast<Real>(p.friction_cloth),
                            .friction_obstacle = static_cast<Real>(p.friction_obstacle),
-                           .own_friction = mesh.object_friction.view()};
+                           .own_friction = mesh.object_friction.view(),
+                           .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness))};
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
