@@ -30,6 +30,11 @@ class Simulator {
   /// keeps the state before it and says so in the report.
   virtual StepReport step(std::span<const InputEvent> events) = 0;
 
+  /// Moves the clock over a step that was refused: bodies go to where they are after it, the cloth
+  /// stays where it is and comes to rest. Vertices that bodies go through are let go from these
+  /// until they are outside again; penetrations are left to be counted.
+  virtual void pass_over() = 0;
+
   virtual const Parameters& parameters() const = 0;
   virtual void set_parameters(const Parameters& parameters) = 0;
 

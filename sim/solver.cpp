@@ -45,6 +45,11 @@ struct ObstacleVelocity {
   }
 };
 
+struct Rest {
+  View<Vec3r> v;
+  ICLOTH_HD void operator()(Index i) const { v[i] = Vec3r{}; }
+};
+
 struct Gather {
   View<const Index> list;
   View<const Vec3r> from;
@@ -216,6 +221,7 @@ void Solver::accept_substep(StepReport& report, double dt) {
     report.momentum_error =
         std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
+  pinch_.take_back(state_, parameters_);
   implicit_.finish_substep(state_);
   work_ += implicit_.work();
   if (impact_zones_.corrected()) work_ += zone_work(dt);
@@ -235,6 +241,14 @@ double Solver::zone_work(double dt) {
 }
 
 void Solver::back_to_substep_start() { state_.x1.copy_from(state_.x0); }
+
+/// Cloth without velocity, friction and past.
+void Solver::rest_cloth() {
+  for_each("step.rest", mesh_.cloth_vertices, Rest{state_.v.view()});
+  state_.held.resize(0);
+  state_.past.forget();
+  energy_.reset();
+}
 
 int Solver::travel_level() const {
   const double speed = static_cast<double>(
@@ -264,14 +278,14 @@ void Solver::back_to_start() {
 void Solver::report_offending(StepReport& report) const {
   constexpr std::size_t kMost = 100;
   report.offending.clear();
-  report.pinched = report.finite;
+  report.no_room = report.finite;
   if (!report.finite) return;
 
   // Where every pair that is left is with an obstacle, it is the obstacles that leave no room.
   for (const Impact& impact : ccd_.impacts().download()) {
     const Index* v = impact.s.v;
-    report.pinched =
-        report.pinched && std::any_of(v, v + 4, [&](Index i) { return i >= mesh_.cloth_vertices; });
+    report.no_room =
+        report.no_room && std::any_of(v, v + 4, [&](Index i) { return i >= mesh_.cloth_vertices; });
     if (report.offending.size() < kMost)
       report.offending.push_back({key_is_edge_edge(impact.key), {v[0], v[1], v[2], v[3]}});
   }
@@ -345,7 +359,10 @@ Snapshot Solver::snapshot() const {
 }
 
 void Solver::restore(const Snapshot& snapshot) {
-  check_memory(snapshot, {mesh_.vertices, mesh_.cloth_vertices, mesh_.cloth_faces});
+  check_memory(snapshot, {.vertices = mesh_.vertices,
+                          .cloth_vertices = mesh_.cloth_vertices,
+                          .cloth_faces = mesh_.cloth_faces,
+                          .objects = static_cast<Index>(world_.objects.size())});
   use_device();
   upload(snapshot, state_);
   broad_phase_.follow_memory();

@@ -8,6 +8,7 @@
 #include "sim/collision/broad_phase.h"
 #include "sim/collision/ccd.h"
 #include "sim/collision/impact_zones.h"
+#include "sim/collision/pinch.h"
 #include "sim/collision/proximity.h"
 #include "sim/hands.h"
 #include "sim/mechanics/implicit.h"
@@ -22,6 +23,7 @@ class Solver final : public Simulator {
 
   // sim/step.cpp
   StepReport step(std::span<const InputEvent> events) override;
+  void pass_over() override;
 
   // sim/solver.cpp
   icloth::Build build() const override;
@@ -46,6 +48,7 @@ class Solver final : public Simulator {
   void begin_substep(double start, double dt);
   void accept_substep(StepReport& report, double dt);
   double zone_work(double dt);
+  bool let_go_of_bodies(StepReport& report, double start, double dt);
   void report_offending(StepReport& report) const;
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
@@ -54,6 +57,7 @@ class Solver final : public Simulator {
   /// Halvings after which no vertex is expected to travel further than allowed in a substep.
   int travel_level() const;
   void back_to_substep_start();
+  void rest_cloth();
   void save_start();
   void back_to_start();
   void reserve_memory();
@@ -85,6 +89,7 @@ class Solver final : public Simulator {
   Implicit implicit_;
   Ccd ccd_;
   ImpactZones impact_zones_;
+  Pinch pinch_{world_};
 };
 
 }  // namespace icloth::ICLOTH_BUILD

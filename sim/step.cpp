@@ -10,7 +10,8 @@
 //     none left → accept
 //     impact_zones            (4) moves only what must move                        Algorithms 2–3
 //   impacts left → refuse, halve the step and try again; in the smallest step, what still collides
-//   stays where it was. Penetrations are never accepted.
+//   stays where it was. Where bodies overlap, the cloth between them is let go from one of them
+//   (sim/collision/pinch.h). Other penetrations are never accepted.
 
 #include <chrono>
 #include <cmath>
@@ -40,9 +41,10 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
   timed(report.ms_proximity, [&] {
     if (parameters_.proximity.enabled)
-      proximity_.find(step, broad_phase_);
+      proximity_.find(step, broad_phase_, let_go_view(state_, mesh_));
     else
       proximity_.clear();
+    if (!state_.let_go.empty()) proximity_.add(pinch_.push_outs(step));
   });
 
   // The candidate, which forces alone decide and which may penetrate.
@@ -110,8 +112,34 @@ void Solver::find_impacts(SubstepContext& step, bool first_round) {
     else
       broad_phase_.cover_again(step);
   });
-  timed(report.ms_ccd, [&] { ccd_.find(step, broad_phase_, impact_zones_.dirty(), incremental); });
+  timed(report.ms_ccd, [&] {
+    ccd_.find(step, broad_phase_, impact_zones_.dirty(), incremental, let_go_view(state_, mesh_));
+  });
   report.impacts_left = ccd_.impacts().size();
+}
+
+/// True when cloth was let go that bodies squeeze in the smallest substep: it is tried once more.
+bool Solver::let_go_of_bodies(StepReport& report, double start, double dt) {
+  if (!report.finite || !parameters_.impact_zones.enabled || ccd_.impacts().empty()) return false;
+  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+  return pinch_.release(step, ccd_.impacts());
+}
+
+/// The bodies move against resting cloth; what they hit is let go.
+void Solver::pass_over() {
+  use_device();
+  const double dt = parameters_.step.time_step;
+  begin_substep(state_.time, dt);
+  StepReport report;
+  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), state_.time};
+  broad_phase_.cover_candidate(step);
+  ccd_.find(step, broad_phase_, {}, false, let_go_view(state_, mesh_));
+  pinch_.release_all(state_, ccd_.impacts());
+
+  // The cloth goes on from rest: what it remembers of the motion before is not true any more.
+  rest_cloth();
+  state_.time += dt;
+  ++state_.step;
 }
 
 StepReport Solver::step(std::span<const InputEvent> events) {
@@ -144,15 +172,16 @@ StepReport Solver::step(std::span<const InputEvent> events) {
         if (level > travel_level() && done % (whole >> (level - 1)) == 0) --level;
       } else {
         report_offending(report);
+        const bool room = level == levels && let_go_of_bodies(report, start, dt);
         back_to_substep_start();
         ++report.retries;
-        report.accepted = ++level <= levels;
+        if (!room) report.accepted = ++level <= levels;
       }
     }
 
     if (report.accepted) {
       report.offending.clear();
-      report.pinched = false;
+      report.no_room = false;
       state_.time += report.dt;
       report.step = ++state_.step;
     } else {
@@ -165,6 +194,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     if (report.accepted) report.energy_balance = energy - *energy_ - work_;
     energy_ = energy;
     report.state_hash = hash_state(state_);
+    report.pinched = pinch_.vertices(state_);
     grow_reserve();
   });
 

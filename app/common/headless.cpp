@@ -20,7 +20,7 @@ void print_refusal(const HeadlessJob& job, const StepReport& report) {
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
                static_cast<long long>(report.step), report.time,
                !report.finite   ? "the state was not finite, "
-               : report.pinched ? "bodies leave the cloth no room, "
+               : report.no_room ? "bodies leave the cloth no room, "
                                 : "",
                static_cast<long long>(report.impacts_left));
   for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)

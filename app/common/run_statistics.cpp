@@ -94,6 +94,12 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
   text += formatted("%-22s %12.2f\n", "steps/s (median)", steps_per_second());
   text += formatted("%-22s %12.0f\n", "impacts resolved", sum("impacts_first"));
   text += formatted("%-22s %12.0f   retries %.0f\n", "substeps", sum("substeps"), sum("retries"));
+  if (largest("pinched") > 0) {
+    const auto steps_pinched =
+        std::ranges::count_if(values("pinched"), [](double n) { return n > 0; });
+    text += formatted("%-22s %12.0f   vertices at most, in %lld steps\n", "pinched",
+                      largest("pinched"), static_cast<long long>(steps_pinched));
+  }
 
   // The machine and the outcome.
   if (!device_.empty())

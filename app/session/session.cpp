@@ -28,7 +28,7 @@ std::string failure_sentence(const StepReport& report) {
                   "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
                   "cloth is where it was before. A smaller time step usually helps.",
                   report.time);
-  } else if (report.pinched) {
+  } else if (report.no_room) {
     std::snprintf(text, sizeof text,
                   "The step at %.3f s was refused: moving bodies leave the cloth no room (%lld "
                   "collision%s). The cloth is where it was before and nothing has passed through. "

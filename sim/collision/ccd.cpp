@@ -13,15 +13,17 @@ struct ImpactTest {
   View<const std::uint8_t> dirty;
   bool incremental;
   double separation;  ///< of the degenerate fallback [m]
+  LetGoView let_go;
 
   /// True for a pair that cannot touch anew: nothing of it can move, or no vertex of it is dirty.
+  /// True also where its contacts are let go.
   ICLOTH_HD bool skip(const Index v[4]) const {
     bool movable = false, changed = false;
     for (int a = 0; a < 4; ++a) {
       movable = movable || inverse_mass[v[a]] > 0;
       changed = changed || (incremental && v[a] < dirty.size() && dirty[v[a]] != 0);
     }
-    return !movable || (incremental && !changed);
+    return !movable || (incremental && !changed) || let_go.ignores(v);
   }
 
   template <class Emit>
@@ -93,7 +95,7 @@ struct TestEdgeEdge {
 }  // namespace
 
 void Ccd::find(SubstepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
-               bool incremental) {
+               bool incremental, const LetGoView& let_go) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const ImpactTest base{.x0 = s.x0.view(),
@@ -101,7 +103,8 @@ void Ccd::find(SubstepContext& step, const BroadPhase& broad_phase, View<const s
                         .inverse_mass = s.inverse_mass.view(),
                         .dirty = dirty,
                         .incremental = incremental,
-                        .separation = 0.25 * static_cast<double>(step.offset())};
+                        .separation = 0.25 * static_cast<double>(step.offset()),
+                        .let_go = let_go};
   impacts_.resize(0);
 
   // The lists are sorted by key, vertices against faces first, so that they depend on the state

@@ -8,6 +8,7 @@
 
 #include "kernels/impact.h"
 #include "sim/collision/broad_phase.h"
+#include "sim/collision/let_go.h"
 #include "sim/linear/incidence.h"
 #include "sim/state/state.h"
 
@@ -15,9 +16,10 @@ namespace icloth::ICLOTH_BUILD {
 
 class Ccd {
  public:
-  /// Finds the impacts, sorted by key. `dirty` (cloth_vertices) is only read when `incremental`.
+  /// Finds the impacts, sorted by key. `dirty` (cloth_vertices) is only read when `incremental`;
+  /// pairs that `let_go` ignores are left out.
   void find(SubstepContext& step, const BroadPhase& broad_phase, View<const std::uint8_t> dirty,
-            bool incremental);
+            bool incremental, const LetGoView& let_go = {});
 
   const Array<Impact>& impacts() const { return impacts_; }
 

@@ -22,6 +22,7 @@ struct ContactMaker {
   Real friction_cloth, friction_obstacle;
   View<const Real> own_friction;  ///< −1: none (objects), empty: none has one
   Real line_area;                 ///< kLineLoad / (k h) [m], see carrying_area
+  LetGoView let_go;
 
   /// Corners 0 and 2 are of the two elements, VF or EE; an obstacle's, if any, may be either.
   ICLOTH_HD Real coefficient(const Stencil& s, bool on_obstacle) const {
@@ -70,6 +71,7 @@ struct ContactMaker {
   /// vector perpendicular to both elements, zero when there is no such direction. It gives the
   /// normal, since the gap vector of a small gap has lost its digits.
   ICLOTH_HD bool make(Contact& c, Vec3r across) const {
+    if (let_go.ignores(c.s.v)) return false;
     const Vec3r g = apply(c.s, x);
     c.gap = norm(g);
     if (!(c.gap < reach) || c.gap <= 0) return false;
@@ -239,6 +241,12 @@ struct KeepFriction {
   }
 };
 
+struct CopyContacts {
+  View<const Contact> from;
+  View<Contact> to;
+  ICLOTH_HD void operator()(Index i) const { to[i] = from[i]; }
+};
+
 constexpr double kRampTime = 0.2;  // [s]
 
 }  // namespace
@@ -283,7 +291,14 @@ void Proximity::clear() {
   rubs_ = false;
 }
 
-void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
+void Proximity::add(const Array<Contact>& more) {
+  const Index old = contacts_.size();
+  contacts_.resize_keep(old + more.size());
+  for_each("proximity.add", more.size(),
+           CopyContacts{more.view(), contacts_.view().sub(old, more.size())});
+}
+
+void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const LetGoView& let_go) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
   const Real h = step.thickness();
@@ -302,7 +317,8 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase) {
                            .friction_cloth = static_cast<Real>(p.friction_cloth),
                            .friction_obstacle = static_cast<Real>(p.friction_obstacle),
                            .own_friction = mesh.object_friction.view(),
-                           .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness))};
+                           .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness)),
+                           .let_go = let_go};
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();

@@ -3,6 +3,7 @@
 
 #include "kernels/contact.h"
 #include "sim/collision/broad_phase.h"
+#include "sim/collision/let_go.h"
 #include "sim/linear/incidence.h"
 #include "sim/state/state.h"
 
@@ -11,7 +12,10 @@ namespace icloth::ICLOTH_BUILD {
 class Proximity {
  public:
   /// Finds the contacts of the step at x0, sorted by pair key.
-  void find(SubstepContext& step, const BroadPhase& broad_phase);
+  /// Pairs that `let_go` ignores are left out.
+  void find(SubstepContext& step, const BroadPhase& broad_phase, const LetGoView& let_go = {});
+  /// Adds contacts without friction after those found.
+  void add(const Array<Contact>& more);
   /// No contacts in this step.
   void clear();
   /// Writes to state.held what the contacts hold after the accepted motion x0 → x1.

@@ -15,6 +15,7 @@ void assign(Vec3d& to, const Vec3r& from) { to = convert<double>(from); }
 void assign(HeldForceOf<double>& to, const HeldForce& from) {
   to = {from.key, convert<double>(from.force), from.stuck};
 }
+void assign(LetGo& to, const LetGo& from) { to = from; }
 void assign(FaceYarns& to, const YarnAnchor& from) {
   assign(to.curvature[0], from.curvature.uu);
   assign(to.curvature[1], from.curvature.uv);
@@ -33,6 +34,7 @@ void assign_real(Vec3r& to, const Vec3d& from) { to = convert<Real>(from); }
 void assign_real(HeldForce& to, const HeldForceOf<double>& from) {
   to = {from.key, convert<Real>(from.force), from.stuck};
 }
+void assign_real(LetGo& to, const LetGo& from) { to = from; }
 void assign_real(YarnAnchor& to, const FaceYarns& from) {
   to = {{real(from.curvature[0]), real(from.curvature[1]), real(from.curvature[2])},
         real(from.shear)};

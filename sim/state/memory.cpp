@@ -55,6 +55,12 @@ void fields(H& held, const Visit& visit) {
   visit(held.stuck);
 }
 
+template <class L, class Visit>
+requires std::is_same_v<std::remove_const_t<L>, LetGo>
+void fields(L& entry, const Visit& visit) {
+  visit(entry.vertex), visit(entry.body), visit(entry.side);
+}
+
 template <class Y, class Visit>
 requires std::is_same_v<std::remove_const_t<Y>, FaceYarns>
 void fields(Y& yarns, const Visit& visit) {
@@ -250,6 +256,19 @@ void check_hand(const HeldPatch& hand, const MemoryShape& shape) {
                  std::to_string(hand.vertices.size()) + " of each");
 }
 
+void check_let_go(const LetGo& entry, const MemoryShape& shape) {
+  const auto require = [](bool holds, const char* what, Index value, const std::string& expected) {
+    if (!holds)
+      refuse_shape(std::string("let_go: ") + what + " " + std::to_string(value) + ", expected " +
+                   expected);
+  };
+  require(entry.vertex >= 0 && entry.vertex < shape.cloth_vertices, "vertex", entry.vertex,
+          "0 to " + std::to_string(shape.cloth_vertices - 1));
+  require(entry.body >= 0 && entry.body < shape.objects, "body", entry.body,
+          "0 to " + std::to_string(shape.objects - 1));
+  require(entry.side == 1 || entry.side == -1, "side", entry.side, "1 or -1");
+}
+
 }  // namespace
 
 std::size_t memory_bytes(const Snapshot& snapshot) {
@@ -271,6 +290,7 @@ void check_memory(const Snapshot& snapshot, const MemoryShape& shape) {
   if (snapshot.past.dt > 0 && (snapshot.past.motion.empty() || snapshot.past.change.empty()))
     refuse_shape("past.motion or past.change: no elements, expected those of the step before");
   for (const HeldPatch& hand : snapshot.hands) check_hand(hand, shape);
+  for (const LetGo& entry : snapshot.let_go) check_let_go(entry, shape);
 }
 
 std::vector<std::byte> memory_to_bytes(const Snapshot& snapshot) {

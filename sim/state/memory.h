@@ -27,6 +27,14 @@ struct HeldForceOf {
   Index stuck = 0;        ///< 0: the pair was sliding
 };
 
+/// A cloth vertex and a body that do not see each other, because bodies leave the cloth no room,
+/// until the vertex is outside again (sim/collision/pinch.h).
+struct LetGo {
+  Index vertex = 0;
+  Index body = 0;  ///< number of the object in the world
+  Index side = 1;  ///< +1: outside is where the normals of the body's faces point, −1: opposite
+};
+
 /// Deformation of a face at which the friction of its yarns pulls nowhere
 /// (kernels/yarn_friction.h).
 struct FaceYarns {
@@ -99,6 +107,8 @@ struct MemoryOf {
   List<typename Storage::Box> trusted;
   bool trusted_complete = false;  ///< the lists hold all pairs of the boxes, not the dirty alone
 
+  List<LetGo> let_go;  ///< sorted by vertex and body, mostly empty
+
   std::vector<HeldPatch> hands;  ///< in the order in which they grabbed
 
   void copy_from(const MemoryOf& other);
@@ -130,6 +140,7 @@ void for_each_part(const Visit& visit, Memory&... m) {
   visit(MemoryPart{"start_gap", Extent::cloth_vertices, true}, m.start_gap...);
   visit(MemoryPart{"trusted", Extent::vertices, true}, m.trusted...);
   visit(MemoryPart{"trusted_complete", Extent::single}, m.trusted_complete...);
+  visit(MemoryPart{"let_go", Extent::any}, m.let_go...);
   visit(MemoryPart{"hands", Extent::any}, m.hands...);
 }
 
@@ -161,10 +172,11 @@ std::size_t memory_bytes(const Snapshot& snapshot);
 /// Counts of a scene, by which the lists of a memory are checked.
 struct MemoryShape {
   Index vertices = 0, cloth_vertices = 0, cloth_faces = 0;
+  Index objects = 0;  ///< cloths and bodies
 };
 
 /// Throws std::invalid_argument, in one line, when the lists are not as long as the scene needs
-/// them or a hand holds vertices that no cloth has.
+/// them, or a hand or what is let go names vertices or bodies that there are not.
 void check_memory(const Snapshot& snapshot, const MemoryShape& shape);
 
 /// A snapshot as bytes: version, length and check sum, then all parts; equal snapshots give equal

@@ -49,6 +49,7 @@ constexpr ReportColumn kColumns[] = {
     {"box_tests", &R::box_tests},
     {"momentum_error", &R::momentum_error},
     {"energy_balance", &R::energy_balance},
+    {"pinched", &R::pinched},
 };
 
 }  // namespace

@@ -53,12 +53,14 @@ struct StepReport {
   /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
   /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.
   double energy_balance = 0;
+  /// Cloth vertices that are let go from a body at the end of the step (sim/collision/pinch.h).
+  std::int64_t pinched = 0;
   std::uint64_t state_hash = 0;
 
   bool accepted = true;                  ///< false: the state before the step was kept
   bool finite = true;                    ///< false: NaN or infinity appeared and was thrown away
   std::vector<OffendingPair> offending;  ///< of a refused step, at most 100
-  bool pinched = false;  ///< refused, and every pair left is with an obstacle: it leaves no room
+  bool no_room = false;  ///< refused, and every pair left is with an obstacle: it leaves no room
 };
 
 /// One column of the statistics table.

@@ -66,6 +66,8 @@ class FakeSimulator : public Simulator {
     return report;
   }
 
+  void pass_over() override { advance(); }
+
   const Parameters& parameters() const override { return parameters_; }
   void set_parameters(const Parameters& parameters) override { parameters_ = parameters; }
   double time() const override { return time_; }

@@ -32,7 +32,7 @@ constexpr Case kCases[] = {
     {"needle", "a tip between the vertices holds the cloth", needle},
     {"box corner", "a corner holds the cloth", box_corner},
     {"narrow gap", "bodies that leave room for the cloth are resolved", narrow_gap},
-    {"pinch", "bodies that leave none: refused, with the pairs", pinch},
+    {"pinch", "bodies that overlap squeeze the cloth and give it free again", pinch},
     {"pin in the way", "a body through a pin: refused, with the pairs", pin_in_the_way},
     {"teleport", "a body that jumps across: resolved or refused", teleport},
     {"skirt at 1/20 s", "every step is resolved", skirt},

@@ -78,6 +78,7 @@ void draw_counts(const StepReport& r) {
   row("elementary tests", "%lld", static_cast<Count>(r.elementary_tests));
   row("impacts found, left", "%lld, %lld", static_cast<Count>(r.impacts_first),
       static_cast<Count>(r.impacts_left));
+  if (r.pinched > 0) row("pinched vertices", "%lld", static_cast<Count>(r.pinched));
   row("rounds", "%lld", static_cast<Count>(r.rounds));
   row("zones, largest", "%lld, %lld", static_cast<Count>(r.zones),
       static_cast<Count>(r.largest_zone));

@@ -72,10 +72,21 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
 
   // The second line begins with the most important number.
   draw_penetrations(context);
+  char text[64];
+
+  // Squeezed cloth is told as long as there is any.
+  if (context.state.report.pinched > 0) {
+    std::snprintf(text, sizeof text, "pinched %lld",
+                  static_cast<long long>(context.state.report.pinched));
+    item(text, colour::kChanged);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip(
+          "Bodies overlap and squeeze this many cloth vertices:\n"
+          "they are let go from one body until the bodies part.");
+  }
   item(texts.device.c_str());
 
   // A step that takes long is told as such, so that the window does not seem to hang.
-  char text[64];
   const double busy = context.session.step_seconds();
   if (busy > kLongStep) {
     std::snprintf(text, sizeof text, "in a step for %.0f s", busy);

@@ -1,4 +1,4 @@
-// The contacts that the stage finds: how large they count.
+// The contacts that the stage finds: how large they count, and which are left out.
 #define ICLOTH_BUILD cpu64
 #define ICLOTH_REAL double
 
@@ -31,7 +31,7 @@ std::vector<Contact> contacts_of(Stage& stage) {
   Proximity proximity;
   SubstepContext step = stage.context();
   broad_phase.prepare(step);
-  proximity.find(step, broad_phase);
+  proximity.find(step, broad_phase, let_go_view(stage.state, stage.mesh));
   return proximity.contacts().download();
 }
 
@@ -61,6 +61,21 @@ TEST(Proximity, ContactsOfAFineSheetHoldTheTensionOfClothThatHangsOverAnEdge) {
     EXPECT_LT(k * h * width, 0.1);
     EXPECT_NEAR(k * h * c.area / width, 1, 1e-9);
   }
+}
+
+TEST(Proximity, PairsThatAreLetGoAreLeftOutAndNoOthers) {
+  Stage stage(sheet_over_box(0.1, 200, 1e-3));
+  const std::vector<Contact> all = contacts_of(stage);
+  const Index vertex = all[all.size() / 2].s.v[0], body = 1;
+  ASSERT_LT(vertex, stage.world.cloth_vertices);
+  stage.state.let_go.upload(std::vector<LetGo>{{vertex, body, 1}});
+
+  std::vector<std::uint64_t> expected, found;
+  for (const Contact& c : all)
+    if (std::ranges::find(c.s.v, vertex) == std::end(c.s.v)) expected.push_back(c.key);
+  for (const Contact& c : contacts_of(stage)) found.push_back(c.key);
+  EXPECT_LT(expected.size(), all.size());
+  EXPECT_EQ(found, expected);
 }
 
 }  // namespace

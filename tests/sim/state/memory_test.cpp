@@ -48,6 +48,8 @@ Snapshot full_snapshot() {
     s.trusted.push_back({{1, 2, 3}, {4, 5, 6.5F + static_cast<float>(k)}});
   s.trusted_complete = true;
 
+  s.let_go = {{1, 2, 1}, {2, 2, -1}};
+
   HeldPatch hand;
   hand.id = 3, hand.radius = number(), hand.stiffness = number(), hand.target = vector();
   hand.barycentric = vector(), hand.followed = vector(), hand.pulled_to = vector();
@@ -60,7 +62,7 @@ Snapshot full_snapshot() {
   return s;
 }
 
-constexpr MemoryShape kFullShape{4, 3, 1};
+constexpr MemoryShape kFullShape{4, 3, 1, 3};
 
 template <class T>
 void put(Bytes& bytes, std::size_t offset, T value) {
@@ -101,6 +103,8 @@ TEST(Memory, SurvivesAsBytesInEveryPart) {
   EXPECT_TRUE(again.yarns_bend);
   EXPECT_EQ(again.start_gap, full.start_gap);
   EXPECT_EQ(again.trusted[3].hi[2], 9.5F);
+  ASSERT_EQ(again.let_go.size(), 2u);
+  EXPECT_EQ(again.let_go[1].side, -1);
   ASSERT_EQ(again.hands.size(), 2u);
   EXPECT_EQ(again.hands[0].share, full.hands[0].share);
   EXPECT_EQ(again.hands[0].offset, full.hands[0].offset);
@@ -208,6 +212,12 @@ TEST(Memory, OfAnotherSceneIsRefusedByPartAndCount) {
             "snapshot of another scene: v: 0 elements, expected 4");
   EXPECT_EQ(misfit([](Snapshot& s) { s.yarns.resize(2); }),
             "snapshot of another scene: yarns: 2 elements, expected 1 or none");
+  EXPECT_EQ(misfit([](Snapshot& s) { s.let_go[0].vertex = 3; }),
+            "snapshot of another scene: let_go: vertex 3, expected 0 to 2");
+  EXPECT_EQ(misfit([](Snapshot& s) { s.let_go[0].body = -1; }),
+            "snapshot of another scene: let_go: body -1, expected 0 to 2");
+  EXPECT_EQ(misfit([](Snapshot& s) { s.let_go[1].side = 0; }),
+            "snapshot of another scene: let_go: side 0, expected 1 or -1");
   EXPECT_NE(misfit([](Snapshot& s) { s.start_gap.resize(1); }), "");
   EXPECT_NE(misfit([](Snapshot& s) { s.trusted.resize(1); }), "");
   EXPECT_NE(misfit([](Snapshot& s) { s.past.motion.clear(); }), "");
