@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <set>
 
 namespace icloth {
 
@@ -78,6 +80,74 @@ std::string ElementNames::pair(const OffendingPair& pair) const {
   const std::span<const Index> v = pair.vertices;
   if (pair.edge_edge) return "edge " + vertices(v.first(2)) + " — edge " + vertices(v.last(2));
   return "vertex " + vertices(v.first(1)) + " — face " + vertices(v.last(3));
+}
+
+namespace {
+
+/// Vertices of all cloths that are pinned, by their global numbers.
+std::set<Index> pinned_vertices(const Scene& scene) {
+  std::set<Index> pinned;
+  Index first = 0;
+  for (const Cloth& cloth : scene.cloths) {
+    for (const Index v : cloth.pins) pinned.insert(first + v);
+    first += static_cast<Index>(cloth.mesh.positions.size());
+  }
+  return pinned;
+}
+
+/// The given vertices that are pinned or, where none is, the pinned ones that share a face with
+/// them.
+std::set<Index> pins_near(const Scene& scene, const std::set<Index>& vertices) {
+  const std::set<Index> pinned = pinned_vertices(scene);
+  std::set<Index> hit, beside;
+  std::ranges::set_intersection(vertices, pinned, std::inserter(hit, hit.end()));
+  if (!hit.empty() || pinned.empty()) return hit;
+  Index first = 0;
+  for (const Cloth& cloth : scene.cloths) {
+    for (const Triangle& t : cloth.mesh.faces)
+      if (std::ranges::any_of(t, [&](Index v) { return vertices.contains(first + v); }))
+        for (const Index v : t)
+          if (pinned.contains(first + v)) beside.insert(first + v);
+    first += static_cast<Index>(cloth.mesh.positions.size());
+  }
+  return beside;
+}
+
+}  // namespace
+
+std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
+                            const StepReport& report) {
+  constexpr std::size_t shown = 8;
+  Index cloth_vertices = 0;
+  for (const Cloth& cloth : scene.cloths)
+    cloth_vertices += static_cast<Index>(cloth.mesh.positions.size());
+
+  // Cloth vertices that collide with a body, and the first body that does.
+  std::set<Index> hit;
+  Index body = -1;
+  for (const OffendingPair& pair : report.offending) {
+    const auto of_body =
+        std::ranges::find_if(pair.vertices, [&](Index v) { return v >= cloth_vertices; });
+    if (of_body == pair.vertices.end()) continue;
+    if (body < 0) body = *of_body;
+    for (const Index v : pair.vertices)
+      if (v < cloth_vertices) hit.insert(v);
+  }
+  const std::set<Index> pins = pins_near(scene, hit);
+  if (pins.empty()) return "";
+
+  // "cloth:shirt vertex 3" names the first pin, the others follow as numbers.
+  const auto split = [&](Index v) {
+    const std::string name = names.vertex(v);
+    const std::size_t place = name.rfind(" vertex ");
+    return std::pair(name.substr(0, place), name.substr(place + 8));
+  };
+  std::string text = split(body).first + " is pushed into the pinned vertices";
+  std::size_t count = 0;
+  for (const Index v : pins)
+    if (count++ < shown) text += " " + split(v).second;
+  if (count > shown) text += " … (" + std::to_string(count) + ")";
+  return text + " of " + split(*pins.begin()).first;
 }
 
 int report_start_intersections(const Scene& scene, bool single_precision,

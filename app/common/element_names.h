@@ -42,6 +42,11 @@ class ElementNames {
   Index vertices_ = 0, faces_ = 0;
 };
 
+/// "obstacle:ball is pushed into the pinned vertices 3 4 of cloth:shirt", where a refused step left
+/// collisions of bodies at pinned vertices or beside them; empty where it did not.
+std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
+                            const StepReport& report);
+
 /// Prints what intersects or touches in the start state of a scene to stderr, the first ten by
 /// name. 0: nothing. Otherwise nothing may be simulated, and the number is an exit code: 1 where
 /// faces intersect, 2 where only neighbouring faces touch, which is the fault of a mesh.

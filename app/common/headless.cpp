@@ -17,11 +17,15 @@ constexpr std::size_t kShownPairs = 10;
 /// Tells why a step was refused, and the first of its offending pairs.
 void print_refusal(const HeadlessJob& job, const StepReport& report) {
   const ElementNames names(*job.scene, job.origin.layouts);
+  std::string reason = pins_in_the_way(*job.scene, names, report);
+  if (!reason.empty())
+    reason += ", ";
+  else if (!report.finite)
+    reason = "the state was not finite, ";
+  else if (report.no_room)
+    reason = "bodies leave the cloth no room, ";
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
-               static_cast<long long>(report.step), report.time,
-               !report.finite   ? "the state was not finite, "
-               : report.no_room ? "bodies leave the cloth no room, "
-                                : "",
+               static_cast<long long>(report.step), report.time, reason.c_str(),
                static_cast<long long>(report.impacts_left));
   for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
     std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());

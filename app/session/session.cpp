@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "app/common/element_names.h"
+
 namespace icloth {
 
 namespace {
@@ -21,13 +23,22 @@ InputEvent release_of(int handle) {
 
 }  // namespace
 
-std::string failure_sentence(const StepReport& report) {
-  char text[512];
+std::string failure_sentence(const StepReport& report, const Scene* scene) {
+  char text[640];
+  const std::string pins = scene ? pins_in_the_way(*scene, ElementNames(*scene), report) : "";
   if (!report.finite) {
     std::snprintf(text, sizeof text,
                   "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
                   "cloth is where it was before. A smaller time step usually helps.",
                   report.time);
+  } else if (!pins.empty()) {
+    std::snprintf(
+        text, sizeof text,
+        "The step at %.3f s was refused: %s (%lld collision%s). The cloth is where it was "
+        "before and nothing has passed through. The body has to stay away from what is "
+        "pinned, or the pins have to go.",
+        report.time, pins.c_str(), static_cast<long long>(report.impacts_left),
+        report.impacts_left == 1 ? "" : "s");
   } else if (report.no_room) {
     std::snprintf(text, sizeof text,
                   "The step at %.3f s was refused: moving bodies leave the cloth no room (%lld "
@@ -307,7 +318,7 @@ void Session::finish(const StepReport& report) {
   failed_ = !report.accepted;
   if (failed_) {
     playing_ = false;
-    fail(failure_sentence(report));
+    fail(failure_sentence(report, &simulator_->scene()));
   }
   publish(!playing_);
 }

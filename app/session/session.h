@@ -166,6 +166,6 @@ class Session {
 };
 
 /// Why a step was refused, for people.
-std::string failure_sentence(const StepReport& report);
+std::string failure_sentence(const StepReport& report, const Scene* scene = nullptr);
 
 }  // namespace icloth

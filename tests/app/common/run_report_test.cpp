@@ -70,6 +70,30 @@ TEST(ElementNames, OffendingPairs) {
             "edge cloth:shirt 0 3 — edge cloth:skirt 0 2");
 }
 
+TEST(ElementNames, PinsThatABodyIsPushedInto) {
+  Scene scene = named_scene();
+  for (Cloth& cloth : scene.cloths) cloth.mesh.faces = {{0, 1, 2}, {1, 3, 2}};
+  scene.cloths[1].pins = {1, 3};
+  const ElementNames names(scene);
+  StepReport report;
+  report.accepted = false;
+  EXPECT_EQ(pins_in_the_way(scene, names, report), "");
+
+  // A pinned vertex collides, then one that shares a face with both pins, then the other cloth.
+  report.offending = {{false, {5, 8, 9, 10}}};
+  EXPECT_EQ(pins_in_the_way(scene, names, report),
+            "obstacle:body is pushed into the pinned vertices 1 of cloth:skirt");
+  report.offending = {{true, {6, 6, 8, 9}}};
+  EXPECT_EQ(pins_in_the_way(scene, names, report),
+            "obstacle:body is pushed into the pinned vertices 1 3 of cloth:skirt");
+  report.offending = {{false, {0, 8, 9, 10}}};
+  EXPECT_EQ(pins_in_the_way(scene, names, report), "");
+
+  // Cloth against pinned cloth is no matter of bodies.
+  report.offending = {{false, {0, 4, 5, 6}}};
+  EXPECT_EQ(pins_in_the_way(scene, names, report), "");
+}
+
 TEST(RunStatistics, MedianMeanLargestSum) {
   RunStatistics statistics;
   EXPECT_EQ(statistics.median("ms_total"), 0);
