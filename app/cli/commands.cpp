@@ -116,7 +116,9 @@ void Commands::add_run() {
   command->add_option("--input", run.input_file, "recording whose drags are applied");
   command->add_option("--record", run.record_file, "save the run as a recording");
   command->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
-  command->add_option("--on-failure", run.on_failure, "stop or continue after a refused step")
+  command
+      ->add_option("--on-failure", run.on_failure,
+                   "stop at a refused step, or continue with the clock going on over it")
       ->check(CLI::IsMember({"stop", "continue"}));
 }
 

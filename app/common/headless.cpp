@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "app/common/element_names.h"
 #include "app/common/machine.h"
@@ -33,11 +34,22 @@ void print_refusal(const HeadlessJob& job, const StepReport& report) {
     std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
 }
 
+/// The clock goes on over a refused step; what that did to the state is told.
+void pass_over(Simulator& simulator) {
+  simulator.pass_over();
+  std::set<Index> let_go;
+  for (const LetGo& entry : simulator.snapshot().let_go) let_go.insert(entry.vertex);
+  std::fprintf(stderr,
+               "icloth: went on to %g s with the cloth at rest: %zu vertices are let go from "
+               "bodies, %zu pairs of faces intersect\n",
+               simulator.time(), let_go.size(), count_penetrations(simulator));
+}
+
 /// The input of one step, from the recording where there is one, else from the scene's script.
 Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long step,
                            const Simulator& simulator) {
   if (!job.input)
-    return {script.events(simulator.time(), simulator.parameters().step.time_step), {}};
+    return {script.events(simulator.time(), simulator.parameters().step.time_step), {}, false};
   const auto index = static_cast<std::size_t>(step);
   return index < job.input->steps.size() ? job.input->steps[index] : Recording::Step{};
 }
@@ -97,20 +109,22 @@ HeadlessResult run_headless(const HeadlessJob& job) {
 
   // Each step takes its input, and its report goes to the statistics and to the caller.
   for (long step = 0; step < job.steps; ++step) {
-    const Recording::Step input = next_input(job, script, step, *simulator);
+    Recording::Step input = next_input(job, script, step, *simulator);
     apply_parameters(*simulator, input);
     const StepReport report = simulator->step(input.events);
-    if (job.record) job.record->steps.push_back(input);
-    result.statistics.add(report);
-    if (job.watch) job.watch(*simulator, &report);
+    if (job.pass_over && !report.accepted) input.passed_over = true;
 
-    // A refused step is reported at once; the run may go on after it.
+    // A refused step is told, and ends the run or is passed over.
     if (!report.accepted) {
       progress.finish();
       print_refusal(job, report);
       result.refused.push_back(report);
-      if (job.stop_on_failure) break;
+      if (input.passed_over) pass_over(*simulator);
     }
+    if (job.record) job.record->steps.push_back(input);
+    result.statistics.add(report);
+    if (job.watch) job.watch(*simulator, &report);
+    if (!report.accepted && job.stop_on_failure) break;
     progress.update(step + 1);
   }
   progress.finish();

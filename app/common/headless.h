@@ -19,6 +19,9 @@ struct HeadlessJob {
   const Recording* input = nullptr;  ///< replaces the scene's scripted grabs; null: the script
   Recording* record = nullptr;       ///< its steps and hash are filled; null: nothing is kept
   bool stop_on_failure = true;
+  /// The clock goes on over refused steps (Simulator::pass_over); those of a recording that did so
+  /// are passed over in any case.
+  bool pass_over = false;
   bool quiet = false;  ///< no progress line
   /// Called with the start state (null report) and after every step.
   std::function<void(const Simulator&, const StepReport*)> watch;

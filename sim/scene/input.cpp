@@ -73,6 +73,7 @@ Recording::Step step_from(const JsonValue& value) {
       step.parameters.emplace_back(name, change.number({info->minimum, info->maximum}));
     }
   }
+  step.passed_over = object.boolean("passed_over", false);
   object.finish();
   return step;
 }
@@ -121,6 +122,7 @@ void save_recording(const Recording& recording, const std::string& path) {
       step["events"].push_back(to_json(event));
     for (const auto& [name, value] : recording.steps[i].parameters)
       step["parameters"][name] = value;
+    if (recording.steps[i].passed_over) step["passed_over"] = true;
     text += step.dump() + (i + 1 < recording.steps.size() ? ",\n" : "\n");
   }
   char hash[20];

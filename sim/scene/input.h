@@ -71,6 +71,7 @@ struct Recording {
   struct Step {
     std::vector<InputEvent> events;
     std::vector<std::pair<std::string, double>> parameters;  ///< values changed before the step
+    bool passed_over = false;  ///< it was refused, and the clock went on
   };
 
   std::string scene;  ///< built-in name or path

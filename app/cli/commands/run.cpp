@@ -77,6 +77,7 @@ int run_run(const RunOptions& options) {
   record.overrides = scene_overrides(common);
   if (!options.record_file.empty()) job.record = &record;
   job.stop_on_failure = options.on_failure == "stop";
+  job.pass_over = !job.stop_on_failure;
   job.quiet = common.quiet;
 
   // Statistics and frames are written while the run goes.
