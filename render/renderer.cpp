@@ -14,6 +14,7 @@
 #include "render/overlay.h"
 #include "render/shader_program.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 #include "sim/scene/parameters.h"
 
 namespace icloth {
@@ -68,7 +69,7 @@ constexpr Matrix4 kToTexture{0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5,
 ViewMode parse_view_mode(std::string_view name) {
   for (std::size_t k = 0; k < std::size(kViewNames); ++k)
     if (kViewNames[k] == name) return static_cast<ViewMode>(k);
-  throw InputError("--view '" + std::string(name) + "', expected shaded, wireframe or strain");
+  throw InputError("--view " + in_quotes(name) + ", expected shaded, wireframe or strain");
 }
 
 /// The state of the renderer: its programs, buffers and targets. Needs a current context.

@@ -6,6 +6,7 @@
 
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 #include "sim/scene/world.h"
 
 // One solver a build; each is compiled from sim/solver.cpp in its own namespace.
@@ -42,6 +43,29 @@ void check_resolution(const Scene& scene, const World& world) {
   }
 }
 
+/// Corners of a face, or layers, that are apart in the scene can be at one place in single
+/// precision. Layers are found by the exact test of the start state; corners here.
+void check_corners(const World& world) {
+  const auto at = [&](Index v) {
+    return convert<float>(world.position[static_cast<std::size_t>(v)]);
+  };
+  for (Index f = 0; f < world.cloth_faces; ++f) {
+    const Triangle& face = world.face[static_cast<std::size_t>(f)];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index a = face[c], b = face[(c + 1) % 3];
+      if (!(at(a) == at(b))) continue;
+      const WorldObject& object =
+          world.objects[static_cast<std::size_t>(world.object[static_cast<std::size_t>(a)])];
+      throw InputError("cloth " + in_quotes(object.name) + ", face " +
+                       std::to_string(f - object.first_face) + ": vertices " +
+                       std::to_string(a - object.first_vertex) + " and " +
+                       std::to_string(b - object.first_vertex) +
+                       " are at one place in single precision; expected them apart, or "
+                       "--precision f64");
+    }
+  }
+}
+
 }  // namespace
 
 std::string_view build_name(Build build) {
@@ -65,9 +89,12 @@ std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Sce
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + ": " + reason);
   if (scene->cloths.empty())
-    throw InputError("scene '" + scene->name + "': no cloths, expected at least one");
+    throw InputError("scene " + in_quotes(scene->name) + ": no cloths, expected at least one");
   World world = make_world(*scene);
-  if (build != Build::cpu64) check_resolution(*scene, world);
+  if (build != Build::cpu64) {
+    check_resolution(*scene, world);
+    check_corners(world);
+  }
   switch (build) {
     case Build::cpu32:
       return cpu32::make_solver(std::move(scene), std::move(world), 0);

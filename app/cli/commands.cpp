@@ -221,8 +221,9 @@ void complete_command(std::vector<std::string>& words) {
   const std::string scenes = asset_names("scenes") + " ";
   if (word && scenes.find(" " + first + " ") == std::string::npos &&
       !std::filesystem::exists(first))
-    throw InputError("'" + first + "' is neither a command nor a scene, the nearest command is '" +
-                     std::string(nearest_name(first, kCommands)) + "' (see icloth --help)");
+    throw InputError(in_quotes(first) +
+                     " is neither a command nor a scene, the nearest command is " +
+                     in_quotes(nearest_name(first, kCommands)) + " (see icloth --help)");
   words.insert(words.begin(), "view");
 }
 

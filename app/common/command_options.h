@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/common/options.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 
@@ -17,7 +18,7 @@ inline std::string check_device(const std::string& text) {
   const bool numbered = text.starts_with("cuda:") && text.size() > 5 && text.size() < 9 &&
                         text.find_first_not_of("0123456789", 5) == std::string::npos;
   if (text == "cpu" || text == "cuda" || numbered) return "";
-  return "'" + text + "', expected cpu, cuda or cuda:N";
+  return in_quotes(text) + ", expected cpu, cuda or cuda:N";
 }
 
 /// Checks seconds by itself, since CLI::Range lets NaN through.
@@ -25,7 +26,7 @@ inline std::string check_time(const std::string& text) {
   char* end = nullptr;
   const double time = std::strtod(text.c_str(), &end);
   if (!text.empty() && *end == '\0' && time >= 0 && time <= kLongestTime) return "";
-  return "'" + text + "', expected seconds from 0 to 100000";
+  return in_quotes(text) + ", expected seconds from 0 to 100000";
 }
 
 /// Adds --device to a command; its form is checked while the command line is read.

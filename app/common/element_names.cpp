@@ -6,6 +6,14 @@
 #include <set>
 
 namespace icloth {
+namespace {
+
+bool is_free_in_double(const Scene& scene) {
+  const auto [pairs, touches] = find_start_conflicts(scene, false);
+  return pairs.empty() && touches.empty();
+}
+
+}  // namespace
 
 ElementNames::ElementNames(const Scene& scene, std::span<const FileLayout> layouts) {
   const auto count = [](const auto& list) { return static_cast<Index>(list.size()); };
@@ -150,6 +158,23 @@ std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
   return text + " of " + split(*pins.begin()).first;
 }
 
+std::vector<Index> faces_of_pairs(std::span<const Triangle> faces,
+                                  std::span<const OffendingPair> pairs) {
+  std::vector<Index> found;
+  const auto holds = [](const Triangle& face, std::span<const Index> vertices) {
+    return std::ranges::all_of(vertices, [&](Index v) { return std::ranges::count(face, v) > 0; });
+  };
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const bool is_part = std::ranges::any_of(pairs, [&](const OffendingPair& pair) {
+      const std::span<const Index> all(pair.vertices);
+      const std::size_t first = pair.edge_edge ? 2 : 1;
+      return holds(faces[f], all.first(first)) || holds(faces[f], all.subspan(first));
+    });
+    if (is_part) found.push_back(static_cast<Index>(f));
+  }
+  return found;
+}
+
 int report_start_intersections(const Scene& scene, bool single_precision,
                                std::span<const FileLayout> layouts) {
   constexpr std::size_t shown = 10;
@@ -180,7 +205,7 @@ int report_start_intersections(const Scene& scene, bool single_precision,
   list("places where neighbouring faces touch beside their common vertices", touches,
        [&](const Touch& touch) { return names.touch(touch); });
 
-  // Two of the causes have a remedy that can be named.
+  // Some of the causes have a remedy that can be named.
   const auto of_kind = [&](Touch::Kind kind) {
     return std::ranges::any_of(touches, [&](const Touch& t) { return t.kind == kind; });
   };
@@ -188,6 +213,11 @@ int report_start_intersections(const Scene& scene, bool single_precision,
     std::fprintf(stderr, "  A vertex on an edge has to be a vertex of the faces on both sides.\n");
   if (of_kind(Touch::Kind::vertex_vertex))
     std::fprintf(stderr, "  Vertices at one place are joined by \"weld\" in the scene file.\n");
+  const bool conflicts_in_single = single_precision && !(pairs.empty() && touches.empty());
+  if (conflicts_in_single && is_free_in_double(scene))
+    std::fprintf(stderr,
+                 "  They are apart in the scene, but closer than single precision resolves: move "
+                 "them apart, or use --precision f64.\n");
   if (!pairs.empty()) return 1;
   return touches.empty() ? 0 : 2;
 }

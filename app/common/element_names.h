@@ -46,6 +46,9 @@ class ElementNames {
 /// collisions of bodies at pinned vertices or beside them; empty where it did not.
 std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
                             const StepReport& report);
+/// The faces that hold all vertices of one of the two elements of a pair, sorted.
+std::vector<Index> faces_of_pairs(std::span<const Triangle> faces,
+                                  std::span<const OffendingPair> pairs);
 
 /// Prints what intersects or touches in the start state of a scene to stderr, the first ten by
 /// name. 0: nothing. Otherwise nothing may be simulated, and the number is an exit code: 1 where

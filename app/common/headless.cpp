@@ -9,6 +9,7 @@
 #include "app/common/progress.h"
 #include "sim/files/error.h"
 #include "sim/scene/intersections.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {
@@ -73,22 +74,8 @@ void print_notes(const SceneOrigin& origin) {
 std::size_t count_penetrations(const Simulator& simulator) {
   const Scene& scene = simulator.scene();
   const Snapshot state = simulator.snapshot();
-
-  // The faces of all objects are numbered as the state is; bodies are not tested against each
-  // other.
-  std::vector<Triangle> faces;
-  std::vector<int> group;
-  Index first = 0;
-  const auto append = [&](const TriangleMesh& mesh, int number) {
-    for (const Triangle& t : mesh.faces)
-      faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-    group.resize(faces.size(), number);
-    first += static_cast<Index>(mesh.positions.size());
-  };
-
-  for (const Cloth& cloth : scene.cloths) append(cloth.mesh, 0);
-  for (const Obstacle& obstacle : scene.obstacles) append(obstacle.mesh, -1);
-  return find_intersections(state.x1, faces, group).size();
+  const SceneFaces soup = scene_faces(scene);
+  return find_intersections(state.x1, soup.faces, soup.group).size();
 }
 
 HeadlessResult run_headless(const HeadlessJob& job) {

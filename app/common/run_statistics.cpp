@@ -10,6 +10,7 @@
 #include "app/common/machine.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -117,10 +118,11 @@ StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
   const std::filesystem::path file(path_);
   const bool json = file.extension() == ".json";
   if (!json && file.extension() != ".csv")
-    throw InputError("--stats " + path_ + ": expected a name that ends in .csv or .json");
+    throw InputError("--stats " + shown_path(path_) +
+                     ": expected a name that ends in .csv or .json");
   if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
-    throw InputError("--stats " + path_ + ": there is no folder '" + file.parent_path().string() +
-                     "'");
+    throw InputError("--stats " + shown_path(path_) + ": there is no folder " +
+                     in_quotes(file.parent_path().string()));
 
   // CSV is opened now and gets its head; JSON is written at the end.
   if (json) return;

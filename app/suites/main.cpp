@@ -2,6 +2,7 @@
 #include "app/common/command_options.h"
 #include "app/common/program.h"
 #include "app/suites/bench/bench.h"
+#include "sim/files/body_io.h"
 #include "sim/files/error.h"
 
 namespace icloth {
@@ -41,5 +42,7 @@ int run_suite(int argc, const char* const* argv) {
 }  // namespace icloth
 
 int main(int argc, char** argv) {
+  // A program that reads bodies runs itself again for it.
+  if (const auto code = icloth::serve_body_reader(argc, argv)) return *code;
   return icloth::run_program([&] { return icloth::run_suite(argc, argv); });
 }

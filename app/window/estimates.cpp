@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "sim/files/text.h"
+
 namespace icloth {
 namespace {
 
@@ -13,13 +15,13 @@ double gravity_of(const Parameters& p) { return std::hypot(p.gravity.x, p.gravit
 
 std::string momentum_in_g(const StepReport& report, const Parameters& p) {
   const double share = report.momentum_error / gravity_of(p);
-  return short_number(share < 1e-9 ? 0 : share);
+  return brief_number(share < 1e-9 ? 0 : share);
 }
 
 std::string momentum_value(const StepReport& report, const Parameters& p) {
-  const std::string value = short_number(report.momentum_error) + " m/s²";
+  const std::string value = brief_number(report.momentum_error) + " m/s²";
   if (!(gravity_of(p) > 0)) return value;
-  return value + ", " + short_number(100 * report.momentum_error / gravity_of(p)) + " % of g";
+  return value + ", " + brief_number(100 * report.momentum_error / gravity_of(p)) + " % of g";
 }
 
 double power_of(const StepReport& report) {
@@ -31,7 +33,7 @@ std::string power_value(double watts) {
   return text + (watts < 0 ? " (lost)" : watts > 0 ? " (made)" : "");
 }
 
-std::string percent(double share) { return short_number(100 * share) + " %"; }
+std::string percent(double share) { return brief_number(100 * share) + " %"; }
 
 /// The depth of the closest pair inside the thickness h, 0 … 1.
 double gap_violation(const StepReport& report, const Parameters& p) {
@@ -46,33 +48,6 @@ double zone_violation(const StepReport& report, const Parameters& p) {
 
 }  // namespace
 
-std::string short_number(double value) {
-  if (value == 0) return "0";
-
-  const double size = std::fabs(value);
-  char text[40];
-
-  // Numbers of ordinary size need no exponent.
-  if (size >= 0.01 && size < 9.95) {
-    std::snprintf(text, sizeof text, "%.2g", value);
-    return text;
-  }
-  if (size >= 9.95 && size < 9999.5) {
-    std::snprintf(text, sizeof text, "%.0f", value);
-    return text;
-  }
-
-  std::snprintf(text, sizeof text, "%.0e", value);
-
-  // Others get a short one: 4e-04 becomes 4e-4.
-  std::string out = text;
-  const std::size_t e = out.find('e');
-  if (e == std::string::npos) return out;
-  out.erase(e + 2, std::min(out.find_first_not_of('0', e + 2), out.size() - 1) - (e + 2));
-  if (out[e + 1] == '+') out.erase(e + 1, 1);
-  return out;
-}
-
 std::string signed_power(double watts) {
   constexpr struct {
     double size;
@@ -85,13 +60,13 @@ std::string signed_power(double watts) {
 
   const auto* unit = std::find_if(std::begin(kUnits), std::end(kUnits) - 1,
                                   [&](const auto& u) { return size >= u.size; });
-  return (watts < 0 ? "−" : "+") + short_number(size / unit->size) + " " + unit->name;
+  return (watts < 0 ? "−" : "+") + brief_number(size / unit->size) + " " + unit->name;
 }
 
 std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
   if (!report.accepted) return {};
   return {
-      {"CG residual", short_number(report.cg_residual),
+      {"CG residual", brief_number(report.cg_residual),
        "How much of the right-hand side the linear solves left over, at most."},
       {"momentum error", momentum_value(report, p),
        "Force per mass that a linear solve which stops early makes or loses: it pushes the whole "
@@ -109,7 +84,7 @@ std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
 
 std::string estimates_in_short(const StepReport& report, const Parameters& p) {
   if (!report.accepted) return {};
-  std::string text = "CG " + short_number(report.cg_residual);
+  std::string text = "CG " + brief_number(report.cg_residual);
   if (gravity_of(p) > 0) text += " · momentum " + momentum_in_g(report, p) + " g";
   return text + " · " + signed_power(power_of(report)) + " · gap " +
          percent(gap_violation(report, p));

@@ -22,9 +22,6 @@ std::vector<Estimate> estimates(const StepReport& report, const Parameters& para
 /// empty for a refused step.
 std::string estimates_in_short(const StepReport& report, const Parameters& parameters);
 
-/// A number with two digits and a short exponent: 4e-4, 0.012, 3.1.
-std::string short_number(double value);
-
 /// The power that a step lost or made: "−0.3 mW", "+12 μW".
 std::string signed_power(double watts);
 

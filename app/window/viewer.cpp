@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <thread>
 
+#include "app/common/element_names.h"
 #include "app/window/theme.h"
 #include "render/ui_painter.h"
 #include "sim/files/error.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 
@@ -300,21 +302,9 @@ std::vector<Index> Viewer::failing_faces() const {
     faces.push_back(pair.b);
   }
 
-  // A face is around an element if it holds all of its vertices.
-  const auto contains = [](const Triangle& face, std::span<const Index> vertices) {
-    return std::ranges::all_of(vertices, [&](Index v) { return std::ranges::count(face, v) > 0; });
-  };
-  for (Index f = 0; f < world_.faces; ++f) {
-    const Triangle& face = world_.face[static_cast<std::size_t>(f)];
-    for (const OffendingPair& pair : session_->state().report.offending) {
-      const std::span<const Index> all(pair.vertices);
-      const std::size_t first = pair.edge_edge ? 2 : 1;
-      if (contains(face, all.first(first)) || contains(face, all.subspan(first))) {
-        faces.push_back(f);
-        break;
-      }
-    }
-  }
+  // Those around an element hold all of its vertices.
+  const auto around = faces_of_pairs(world_.face, session_->state().report.offending);
+  faces.insert(faces.end(), around.begin(), around.end());
 
   std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());

@@ -1,147 +1,168 @@
-// The one file that includes assimp.
 #include "sim/files/body_io.h"
 
-#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
-#include <map>
+#include <new>
+#include <stdexcept>
 
+#include "sim/files/body_assimp.h"
+#include "sim/files/body_checks.h"
+#include "sim/files/body_process.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
-#include "sim/files/mesh_io.h"
+#include "sim/files/json_reader.h"
+#include "sim/files/mesh_formats.h"
+#include "sim/files/text.h"
 
-#if defined(ICLOTH_HAS_ASSIMP)
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
-#endif
+// The child sends the length of a JSON text [8 bytes], the text, and, where the body was read, its
+// positions and faces as they are in memory. The text is {"error": …} or {"vertices", "faces",
+// "bones", "clips": [{"name", "duration"}]}.
 
 namespace icloth {
 namespace {
 
-#if defined(ICLOTH_HAS_ASSIMP)
+constexpr const char* kVerb = "--icloth-read-body";
+constexpr std::uint64_t kLargestBody = std::uint64_t{1} << 32;  // [bytes]
 
-using NodePoses = std::map<std::string, aiMatrix4x4>;
+bool is_served = false;  // main has called serve_body_reader
 
-void collect_poses(const aiNode& node, const aiMatrix4x4& parent, NodePoses& poses) {
-  const aiMatrix4x4 pose = parent * node.mTransformation;
-  poses.emplace(node.mName.C_Str(), pose);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) collect_poses(*node.mChildren[i], pose, poses);
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/// Positions of a mesh under a node; a skin replaces the node's own transform.
-std::vector<Vec3d> posed_vertices(const aiMesh& mesh, const aiMatrix4x4& node_pose,
-                                  const NodePoses& poses) {
-  std::vector<aiVector3D> sum(mesh.mNumVertices);
-  std::vector<float> weight(mesh.mNumVertices, 0.0f);
-  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
-    const aiBone& bone = *mesh.mBones[b];
-    const auto found = poses.find(bone.mName.C_Str());
-    if (found == poses.end()) continue;
-    const aiMatrix4x4 pose = found->second * bone.mOffsetMatrix;
-    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
-      const aiVertexWeight& entry = bone.mWeights[w];
-      if (entry.mVertexId >= mesh.mNumVertices) continue;
-      sum[entry.mVertexId] += entry.mWeight * (pose * mesh.mVertices[entry.mVertexId]);
-      weight[entry.mVertexId] += entry.mWeight;
+std::string encode(const nlohmann::json& head, const TriangleMesh& mesh) {
+  const std::string text = head.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  const std::uint64_t length = text.size();
+  std::string bytes(reinterpret_cast<const char*>(&length), sizeof length);
+  bytes += text;
+  append(bytes, mesh.positions);
+  append(bytes, mesh.faces);
+  return bytes;
+}
+
+nlohmann::json head_of(const Body& body) {
+  nlohmann::json head{{"vertices", body.mesh.positions.size()},
+                      {"faces", body.mesh.faces.size()},
+                      {"bones", body.bones},
+                      {"clips", nlohmann::json::array()}};
+  for (const BodyClip& clip : body.clips)
+    head["clips"].push_back({{"name", clip.name}, {"duration", clip.duration}});
+  return head;
+}
+
+/// What the child sends for a file.
+std::string read_and_encode(const std::string& path) {
+  try {
+    check_body(read_file(path, kLargestBody), path);
+    const Body body = read_with_assimp(path);
+    return encode(head_of(body), body.mesh);
+  } catch (const InputError& error) {
+    return encode({{"error", error.what()}}, {});
+  } catch (const std::bad_alloc&) {
+    return encode(
+        {{"error", shown_path(path) + ": asks for more memory than a file of its size needs"}}, {});
+  } catch (const std::exception& error) {
+    return encode({{"error", shown_path(path) + ": cannot be read as a body (" +
+                                 excerpt(error.what()) + ")"}},
+                  {});
+  }
+}
+
+/// The child read a hostile file: what it sends is checked like any other input.
+class Decoder {
+ public:
+  Decoder(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
+
+  Body decode() {
+    std::uint64_t length = 0;
+    take(&length, sizeof length);
+    if (length > rest_.size()) refuse();
+    const auto head = nlohmann::json::parse(rest_.substr(0, length), nullptr, false);
+    rest_.remove_prefix(length);
+    if (head.is_object() && head.contains("error") && head["error"].is_string())
+      throw InputError(head["error"].get<std::string>());
+
+    Body body = body_of(JsonValue(head, shown_path(path_)));
+    take(body.mesh.positions.data(), body.mesh.positions.size() * sizeof(Vec3d));
+    take(body.mesh.faces.data(), body.mesh.faces.size() * sizeof(Triangle));
+    check(body.mesh);
+    return body;
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    throw InputError(shown_path(path_) +
+                     ": cannot be read: the answer of its reader makes no sense");
+  }
+
+  void take(void* to, std::size_t bytes) {
+    if (bytes > rest_.size()) refuse();
+    if (bytes > 0) std::memcpy(to, rest_.data(), bytes);
+    rest_.remove_prefix(bytes);
+  }
+
+  /// The head of the answer, and arrays of the announced size where as many bytes follow.
+  Body body_of(const JsonValue& head) const {
+    JsonObject object(head);
+    const auto most = static_cast<std::int64_t>(kLargestCount);
+    const auto count = [&](const char* key) {
+      return static_cast<std::size_t>(object.required(key).integer(0, most));
+    };
+    const std::size_t vertices = count("vertices"), faces = count("faces");
+    if (vertices * sizeof(Vec3d) + faces * sizeof(Triangle) != rest_.size()) refuse();
+
+    Body body;
+    body.bones = count("bones");
+    for (const JsonValue& item : object.required("clips").items()) {
+      JsonObject clip(item);
+      body.clips.push_back({clip.required("name").text(), clip.required("duration").number()});
     }
+    body.mesh.positions.resize(vertices);
+    body.mesh.faces.resize(faces);
+    return body;
   }
-  std::vector<Vec3d> positions;
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const aiVector3D p = weight[v] > 0 ? sum[v] / weight[v] : node_pose * mesh.mVertices[v];
-    positions.push_back({p.x, p.y, p.z});
+
+  void check(const TriangleMesh& mesh) const {
+    for (Vec3d p : mesh.positions)
+      for (double x : {p.x, p.y, p.z})
+        if (!(std::abs(x) <= kLargestCoordinate)) refuse();
+    const auto count = static_cast<Index>(mesh.positions.size());
+    for (const Triangle& face : mesh.faces)
+      for (Index v : face)
+        if (v < 0 || v >= count) refuse();
+    if (mesh.faces.empty()) refuse();
   }
-  return positions;
+
+  std::string_view rest_;
+  const std::string& path_;
+};
+
+Body read_in_child(const std::string& path) {
+  const std::uint64_t size = regular_file_size(path);
+  if (!is_served) throw std::logic_error("main has not called serve_body_reader");
+  const ProcessResult result = run_own_program(kVerb, path, limits_for(size));
+  if (!result.failure.empty()) throw InputError(shown_path(path) + ": " + result.failure);
+  return Decoder(result.bytes, path).decode();
 }
-
-void add_mesh(const aiMesh& mesh, const std::vector<Vec3d>& positions, const std::string& where,
-              TriangleMesh& body) {
-  const auto first = static_cast<Index>(body.positions.size());
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    if (!(std::abs(positions[v].x) + std::abs(positions[v].y) + std::abs(positions[v].z) < 1e9))
-      throw InputError(where + ": vertex " + std::to_string(v) +
-                       ": value is not finite, expected three finite coordinates");
-  body.positions.insert(body.positions.end(), positions.begin(), positions.end());
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    Triangle triangle;
-    for (unsigned c = 0; c < 3; ++c) {
-      if (face.mIndices[c] >= mesh.mNumVertices)
-        throw InputError(where + ": face " + std::to_string(f) + ": value " +
-                         std::to_string(face.mIndices[c]) + ", expected the number of a vertex");
-      triangle[c] = first + static_cast<Index>(face.mIndices[c]);
-    }
-    body.faces.push_back(triangle);
-  }
-}
-
-void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
-              const NodePoses& poses, const std::string& path, TriangleMesh& body) {
-  const aiMatrix4x4 pose = parent * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    add_mesh(mesh, posed_vertices(mesh, pose, poses), path + ": mesh " + mesh.mName.C_Str(), body);
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i)
-    add_node(scene, *node.mChildren[i], pose, poses, path, body);
-}
-
-/// Vertices are split where texture or normal jump: merged again, so that the surface has no
-/// cracks.
-void merge_coinciding(TriangleMesh& body) {
-  std::map<std::array<double, 3>, Index> first_at;
-  std::vector<Vec3d> positions;
-  std::vector<Index> number;
-  for (Vec3d p : body.positions) {
-    const auto [entry, is_new] =
-        first_at.try_emplace({p.x, p.y, p.z}, static_cast<Index>(positions.size()));
-    if (is_new) positions.push_back(p);
-    number.push_back(entry->second);
-  }
-  for (Triangle& face : body.faces)
-    for (Index& v : face) v = number[static_cast<std::size_t>(v)];
-  std::erase_if(body.faces,
-                [](const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
-  body.positions = std::move(positions);
-}
-
-TriangleMesh read_with_assimp(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": no such file");
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
-  if (!scene || !scene->mRootNode) {
-    std::string reason = importer.GetErrorString();
-    std::ranges::replace(reason, '\n', ' ');
-    throw InputError(path + ": cannot be read as a body (" + reason + ")");
-  }
-  NodePoses poses;
-  collect_poses(*scene->mRootNode, aiMatrix4x4(), poses);
-  TriangleMesh body;
-  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), poses, path, body);
-  merge_coinciding(body);
-  if (body.faces.empty()) throw InputError(path + ": 0 triangles, expected at least one");
-  return body;
-}
-
-#else
-
-TriangleMesh read_with_assimp(const std::string& path) {
-  throw InputError(path + ": value '" + lower_extension(path) +
-                   "', expected .obj or .ply: this program was built without assimp");
-}
-
-#endif
 
 }  // namespace
 
-TriangleMesh read_body(const std::string& path) {
+Body read_body(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".obj" || extension == ".ply") return read_mesh(path).mesh;
-  return read_with_assimp(path);
+  if (extension == ".obj" || extension == ".ply") return {read_mesh(path).mesh, {}, 0};
+  return read_in_child(path);
+}
+
+std::optional<int> serve_body_reader(int argc, const char* const* argv) {
+  is_served = true;
+  if (argc != 3 || std::strcmp(argv[1], kVerb) != 0) return std::nullopt;
+  const std::string path = argv[2];
+  std::error_code gone;  // a file that vanished meanwhile is refused below
+  const auto size = std::filesystem::file_size(path, gone);
+  enter_limits(limits_for(gone ? 0 : size));
+  return send_result(read_and_encode(path)) ? 0 : 1;
 }
 
 }  // namespace icloth

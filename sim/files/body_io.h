@@ -1,15 +1,37 @@
 // Bodies that the cloth falls on, in any format.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/files/mesh.h"
 
 namespace icloth {
 
+/// A motion that a body file holds.
+struct BodyClip {
+  std::string name;     ///< as the file says, not yet fit for a message
+  double duration = 0;  ///< [s]; 0: the file does not say
+};
+
+struct Body {
+  TriangleMesh mesh;            ///< bind pose, in the order of the file
+  std::vector<BodyClip> clips;  ///< not played: the mesh is the bind pose
+  std::size_t bones = 0;        ///< bones that some vertex follows
+};
+
 /// Static pose of a body: OBJ and PLY by the own readers, everything else (glTF, FBX, Collada …) by
 /// assimp, all meshes merged, node transforms and bind skinning applied, coinciding vertices
 /// merged. Throws InputError, also for such a format in a program that was built without assimp.
-TriangleMesh read_body(const std::string& path);
+///
+/// What assimp reads is read in a child process with limits on memory, time and stack, so that no
+/// file can take this program down (sim/files/body_process.h). The main function of a program that
+/// reads bodies calls serve_body_reader first; without it std::logic_error is thrown.
+Body read_body(const std::string& path);
+
+/// To be called first in main. In the child process of read_body it reads the body and returns the
+/// exit code of the program; otherwise it returns nothing and main goes on.
+std::optional<int> serve_body_reader(int argc, const char* const* argv);
 
 }  // namespace icloth

@@ -6,8 +6,9 @@
 
 namespace icloth {
 
-/// The text as one line that a terminal can show: control characters are replaced, and what is
-/// longer than a message may be loses its middle. Names and values in messages come from files.
+/// The text as one line that a terminal can show: control characters are replaced, and words or
+/// texts that are longer than in any message of ours lose their middle. Names and values in
+/// messages come from files; what is repeated of them goes through excerpt (sim/files/text.h).
 std::string one_line(std::string text);
 
 /// Bad usage or bad input: one line naming file, element, value and what was expected. Exit code 2.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -22,21 +23,26 @@ struct CloseFile {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
 [[noreturn]] void fail(const std::string& path, const char* what) {
-  throw InputError(path + ": " + what + " (" + std::strerror(errno) + ")");
+  throw InputError(shown_path(path) + ": " + what + " (" + std::strerror(errno) + ")");
 }
 
 }  // namespace
 
-std::string read_file(const std::string& path, std::uint64_t max_bytes) {
+std::uint64_t regular_file_size(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
+  if (!std::filesystem::exists(status)) throw InputError(shown_path(path) + ": no such file");
   if (!std::filesystem::is_regular_file(status))
-    throw InputError(path + ": is a folder or a device, expected a file");
+    throw InputError(shown_path(path) + ": is a folder or a device, expected a file");
   const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error) throw InputError(path + ": cannot be read (" + error.message() + ")");
+  if (error) throw InputError(shown_path(path) + ": cannot be read (" + error.message() + ")");
+  return size;
+}
+
+std::string read_file(const std::string& path, std::uint64_t max_bytes) {
+  const std::uint64_t size = regular_file_size(path);
   if (size > max_bytes)
-    throw InputError(path + ": " + std::to_string(size) + " bytes, expected at most " +
+    throw InputError(shown_path(path) + ": " + std::to_string(size) + " bytes, expected at most " +
                      std::to_string(max_bytes));
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(path, "cannot be opened");

@@ -8,6 +8,9 @@
 
 namespace icloth {
 
+/// Size of a regular file [bytes]. Throws InputError when it is missing or no regular file.
+std::uint64_t regular_file_size(const std::string& path);
+
 /// Contents of a regular file. Throws InputError when it is missing, no regular file, unreadable or
 /// larger than `max_bytes`.
 std::string read_file(const std::string& path, std::uint64_t max_bytes = std::uint64_t{1} << 34);

@@ -6,6 +6,7 @@
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 
@@ -27,7 +28,8 @@ void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t st
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error)
-      throw InputError("--out " + folder_ + ": cannot be made a folder (" + error.message() + ")");
+      throw InputError("--out " + shown_path(folder_) + ": cannot be made a folder (" +
+                       error.message() + ")");
   }
   char name[32];
   std::snprintf(name, sizeof name, "/frame_%05ld.obj", frames_);

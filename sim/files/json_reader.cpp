@@ -11,7 +11,6 @@ namespace icloth {
 namespace {
 
 constexpr std::uint64_t kMaxBytes = 256u << 20;
-constexpr std::size_t kMaxShown = 60;
 
 /// Short text of a value. Nested ones are not written out: they may be deep.
 std::string shown(const nlohmann::json& json) {
@@ -19,18 +18,16 @@ std::string shown(const nlohmann::json& json) {
   if (json.is_object()) return "{…}";
   if (json.is_array() && (json.size() > 8 || std::ranges::any_of(json, is_nested)))
     return "[… " + std::to_string(json.size()) + " elements]";
-  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "…";
-  return text;
+  if (json.is_string()) return '"' + excerpt(json.get_ref<const std::string&>()) + '"';
+  return excerpt(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
-
-std::string shown(double value) { return nlohmann::json(value).dump(); }
 
 std::string expected_number(NumberRange range) {
   if (range.minimum <= -1e9 && range.maximum >= 1e9) return "a number";
   if (range.maximum >= 1e9)
-    return range.minimum > 0 ? "a number above 0" : "a number, at least " + shown(range.minimum);
-  return "a number from " + shown(range.minimum) + " to " + shown(range.maximum);
+    return range.minimum > 0 ? "a number above 0"
+                             : "a number, at least " + number_text(range.minimum);
+  return "a number from " + number_text(range.minimum) + " to " + number_text(range.maximum);
 }
 
 bool in_range(const nlohmann::json& json, NumberRange range) {
@@ -103,7 +100,7 @@ JsonValue JsonObject::operator[](std::string_view key) {
   // "file.json: name" at the top level, "file.json: cloths[0].name" below.
   const bool top = value_.where().find(": ") == std::string::npos;
   return {found == value_.json().end() ? kNull : *found,
-          value_.where() + (top ? ": " : ".") + std::string(key)};
+          value_.where() + (top ? ": " : ".") + excerpt(key)};
 }
 
 bool JsonObject::has(std::string_view key) {
@@ -113,8 +110,7 @@ bool JsonObject::has(std::string_view key) {
 
 JsonValue JsonObject::required(std::string_view key) {
   if (!has(key))
-    throw InputError((*this)[key].where() + ": is missing, expected the key '" + std::string(key) +
-                     "'");
+    throw InputError((*this)[key].where() + ": is missing, expected the key " + in_quotes(key));
   return (*this)[key];
 }
 
@@ -135,23 +131,31 @@ void JsonObject::finish() const {
   for (const auto& [key, unused] : value_.json().items()) {
     if (std::ranges::find(known_, key) != known_.end()) continue;
     const std::vector<std::string_view> known(known_.begin(), known_.end());
-    throw InputError(value_.where() + ": key '" + key + "' is not known, the nearest is '" +
-                     std::string(nearest_name(key, known)) + "'");
+    throw InputError(value_.where() + ": key " + in_quotes(key) + " is not known, the nearest is " +
+                     in_quotes(nearest_name(key, known)));
+  }
+}
+
+nlohmann::json parse_json(std::string_view text, const std::string& name) {
+  try {
+    return nlohmann::json::parse(text, nullptr, true, true);
+  } catch (const nlohmann::json::exception& error) {
+    // "[json.exception.…] parse error at line 1, column 2: what; last read: 'word'": our users need
+    // the part after ']', and the word may be as long as the file.
+    std::string what = error.what();
+    const std::size_t bracket = what.find("] ");
+    if (bracket != std::string::npos) what.erase(0, bracket + 2);
+    constexpr std::string_view kWord = "last read: '";
+    if (const std::size_t word = what.find(kWord); word != std::string::npos) {
+      const std::size_t begin = word + kWord.size(), end = std::max(what.rfind('\''), begin);
+      what.replace(begin, end - begin, excerpt(std::string_view(what).substr(begin, end - begin)));
+    }
+    throw InputError(name + ": " + what);
   }
 }
 
 nlohmann::json read_json(const std::string& path) {
-  const std::string text = read_file(path, kMaxBytes);
-  try {
-    return nlohmann::json::parse(text, nullptr, true, true);
-  } catch (const nlohmann::json::exception& error) {
-    // "[json.exception.…] parse error at line 1, column 2: what": our users need the part after
-    // ']'.
-    const std::string what = error.what();
-    const std::size_t bracket = what.find("] ");
-    throw InputError(path + ": " +
-                     (bracket == std::string::npos ? what : what.substr(bracket + 2)));
-  }
+  return parse_json(read_file(path, kMaxBytes), shown_path(path));
 }
 
 }  // namespace icloth

@@ -68,6 +68,10 @@ class JsonObject {
   std::vector<std::string> known_;
 };
 
+/// JSON with comments. `name`: of the file, for messages. Throws InputError naming file, line and
+/// column.
+nlohmann::json parse_json(std::string_view text, const std::string& name);
+
 /// JSON with comments from a file. Throws InputError naming file, line and column.
 nlohmann::json read_json(const std::string& path);
 

@@ -6,6 +6,7 @@
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -53,7 +54,7 @@ std::vector<double> load_times(const char* data, std::size_t frames, const std::
     times[f] = load_float(data);
     if (!std::isfinite(times[f]))
       throw InputError(path + ": frame " + std::to_string(f) + ": time: value " +
-                       std::to_string(times[f]) + ", expected a finite number");
+                       number_text(times[f]) + ", expected a finite number");
   }
   return times;
 }

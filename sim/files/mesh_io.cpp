@@ -6,6 +6,7 @@
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_formats.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -39,12 +40,14 @@ double flatness(const TriangleMesh& mesh, const Triangle& face) {
 }  // namespace
 
 MeshFile read_mesh(const std::string& path) {
+  const std::string name = shown_path(path);
   const std::string extension = lower_extension(path);
   if (extension != ".obj" && extension != ".ply")
-    throw InputError(path + ": value '" + extension + "', expected the extension .obj or .ply");
+    throw InputError(name + ": value " + in_quotes(extension) +
+                     ", expected the extension .obj or .ply");
   const std::string text = read_file(path);
-  MeshFile file = extension == ".obj" ? parse_obj(text, path) : parse_ply(text, path);
-  if (file.mesh.faces.empty()) throw InputError(path + ": 0 triangles, expected at least one");
+  MeshFile file = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
+  if (file.mesh.faces.empty()) throw InputError(name + ": 0 triangles, expected at least one");
   return file;
 }
 

@@ -7,6 +7,7 @@
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
 #include "sim/files/polygon.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -32,8 +33,8 @@ class ObjParser {
  private:
   [[noreturn]] void refuse(const std::string& element, std::string_view value,
                            const std::string& expected) const {
-    throw InputError(path_ + ": line " + std::to_string(line_) + ": " + element + ": value '" +
-                     std::string(value.substr(0, 60)) + "', expected " + expected);
+    throw InputError(path_ + ": line " + std::to_string(line_) + ": " + element + ": value " +
+                     in_quotes(value) + ", expected " + expected);
   }
 
   std::string_view next_physical_line() {

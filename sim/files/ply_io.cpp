@@ -11,6 +11,7 @@
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
 #include "sim/files/polygon.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -82,8 +83,8 @@ class PlyParser {
  private:
   [[noreturn]] void refuse(const std::string& element, std::string_view value,
                            const std::string& expected) const {
-    throw InputError(path_ + ": " + element + ": value '" + std::string(value.substr(0, 60)) +
-                     "', expected " + expected);
+    throw InputError(path_ + ": " + element + ": value " + in_quotes(value) + ", expected " +
+                     expected);
   }
 
   std::string_view header_line() {
@@ -127,7 +128,7 @@ class PlyParser {
     const auto [end, error] =
         std::from_chars(count.data(), count.data() + count.size(), element.count);
     if (error != std::errc{} || end != count.data() + count.size() || element.count > kLargestCount)
-      refuse("element " + element.name, count, "a count from 0 to 536870911");
+      refuse("element " + excerpt(element.name), count, "a count from 0 to 536870911");
     elements_.push_back(element);
   }
 
@@ -153,7 +154,7 @@ class PlyParser {
 
   void check_count(const Element& element) const {
     if (element.count > rest_.size() / element.least_bytes(format_ == Format::ascii))
-      refuse("element " + element.name, std::to_string(element.count),
+      refuse("element " + excerpt(element.name), std::to_string(element.count),
              "no more than fit into the " + std::to_string(rest_.size()) +
                  " bytes that follow the header");
   }
@@ -200,13 +201,14 @@ class PlyParser {
     const double count = next_number(property.count, where);
     // Every entry takes a byte at least, so a list is never longer than the rest of the file.
     if (!(count >= 0) || count != std::floor(count) || count > static_cast<double>(rest_.size()))
-      refuse(where, std::to_string(count), "a list length within the file");
+      refuse(where, number_text(count), "a list length within the file");
     return static_cast<std::size_t>(count);
   }
 
   void parse_element(const Element& element) {
+    const std::string name = excerpt(element.name);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      const std::string where = element.name + " " + std::to_string(i);
+      const std::string where = name + " " + std::to_string(i);
       if (element.name == "vertex") {
         parse_vertex(element, where);
       } else {
@@ -228,7 +230,7 @@ class PlyParser {
     }
     for (double x : p)
       if (!(std::abs(x) <= kLargestCoordinate))
-        refuse(where, std::to_string(x), "three finite coordinates");
+        refuse(where, number_text(x), "three finite coordinates");
     file_.mesh.positions.push_back({p[0], p[1], p[2]});
   }
 

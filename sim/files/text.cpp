@@ -1,6 +1,10 @@
 #include "sim/files/text.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <numeric>
 #include <vector>
 
@@ -24,7 +28,137 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
+/// A character of UTF-8 at the start of a text.
+struct Character {
+  std::size_t bytes = 1;
+  std::uint32_t code = kBroken;
+
+  static constexpr std::uint32_t kBroken = 0xFFFFFFFF;
+};
+
+Character first_character(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text[0]);
+  if (lead < 0x80) return {1, lead};
+  const std::size_t bytes = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || text.size() < bytes) return {};
+
+  std::uint32_t code = lead & (0x7Fu >> bytes);
+  for (std::size_t k = 1; k < bytes; ++k) {
+    if (!is_continuation(text[k])) return {};
+    code = code << 6 | (static_cast<unsigned char>(text[k]) & 0x3F);
+  }
+
+  // Longer than needed, half a surrogate pair, or beyond Unicode.
+  constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool valid =
+      code >= kSmallest[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+  return valid ? Character{bytes, code} : Character{};
+}
+
+/// Moves the cursor, ends the line or turns the writing around.
+bool is_control(std::uint32_t code) {
+  return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x200B && code <= 0x200F) ||
+         (code >= 0x2028 && code <= 0x202E) || (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF;
+}
+
+/// Where character `k` of valid UTF-8 begins; the end where there are fewer.
+std::size_t offset_of(std::string_view text, std::size_t k) {
+  std::size_t at = 0;
+  for (; at < text.size(); ++at)
+    if (!is_continuation(text[at]) && k-- == 0) break;
+  return at;
+}
+
+std::size_t character_count(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return !is_continuation(c); }));
+}
+
 }  // namespace
+
+std::string harmless(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const auto [bytes, code] = first_character(text);
+    if (code == '\n' || code == '\r' || code == '\t') {
+      result += ' ';
+    } else if (code == Character::kBroken || is_control(code)) {
+      result += '?';
+    } else {
+      result += text.substr(0, bytes);
+    }
+    text.remove_prefix(bytes);
+  }
+  return result;
+}
+
+std::string excerpt(std::string_view input) {
+  // No more bytes are looked at than can be shown: the input may be hundreds of megabytes.
+  constexpr std::size_t kHead = kMostQuoted / 2, kTail = kMostQuoted - kHead - 1;
+  constexpr std::size_t kMostBytes = 4 * kMostQuoted;
+  const bool is_huge = input.size() > 2 * kMostBytes;
+  const std::string text = harmless(is_huge ? input.substr(0, kMostBytes) : input);
+  const std::size_t count = character_count(text);
+  if (!is_huge && count <= kMostQuoted) return text;
+
+  const std::string end = is_huge ? harmless(input.substr(input.size() - kMostBytes)) : text;
+  const std::size_t skipped = character_count(end) - kTail;
+  return text.substr(0, offset_of(text, kHead)) + "…" + end.substr(offset_of(end, skipped));
+}
+
+std::string in_quotes(std::string_view input) {
+  std::string text(1, '\'');
+  text += excerpt(input);
+  return text += '\'';
+}
+
+std::string shown_path(std::string_view path) {
+  const std::string text = harmless(path);
+  const std::size_t count = character_count(text);
+  if (count <= kMostQuoted) return text;
+  return "…" + text.substr(offset_of(text, count - (kMostQuoted - 1)));
+}
+
+std::string number_text(double value) {
+  constexpr double kLargestWhole = 1e15;
+  if (value == std::floor(value) && std::fabs(value) < kLargestWhole)
+    return std::to_string(static_cast<long long>(value));
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, error == std::errc{} ? end : text};
+}
+
+std::string rounded_text(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", std::min(digits, 17), value);
+  return text;
+}
+
+std::string brief_number(double value) {
+  if (value == 0) return "0";
+  const double size = std::fabs(value);
+  char text[40];
+  if (size >= 0.01 && size < 9.95) {
+    std::snprintf(text, sizeof text, "%.2g", value);
+    return text;
+  }
+  if (size >= 9.95 && size < 9999.5) {
+    std::snprintf(text, sizeof text, "%.0f", value);
+    return text;
+  }
+
+  // Very small and very large ones: 4e-04 → 4e-4, 2e+05 → 2e5.
+  std::snprintf(text, sizeof text, "%.0e", value);
+  std::string out = text;
+  const std::size_t e = out.find('e');
+  if (e == std::string::npos) return out;
+  out.erase(e + 2, std::min(out.find_first_not_of('0', e + 2), out.size() - 1) - (e + 2));
+  if (out[e + 1] == '+') out.erase(e + 1, 1);
+  return out;
+}
 
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
   word = word.substr(0, kLongestName);  // it may come from a file

@@ -5,18 +5,13 @@
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 #include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-std::string short_text(double value, int digits = 3) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
 
 /// Vertices of the file and how many of them are simulated as others.
 std::string count_of(std::size_t some, std::size_t all) {
@@ -35,7 +30,8 @@ double median_edge(const TriangleMesh& mesh) {
 
 /// Moves near vertices together; a face must not lose a corner by that.
 void snap(Cloth& cloth, const ClothMeshOptions& options) {
-  const std::string where = options.file + ": weld: value " + short_text(options.weld.distance, 6);
+  const std::string where =
+      options.file + ": weld: value " + rounded_text(options.weld.distance, 6);
   if (!snap_vertices(cloth.mesh, cloth.rest, options.weld.distance, options.scale))
     throw InputError(where + " m reaches hundreds of vertices at once, expected less than an edge");
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f) {
@@ -81,7 +77,7 @@ void note_vertices(const TriangleMesh& mesh, const FileLayout& layout,
   // Seams that rounding opened by a little cannot run, and look closed in every picture.
   if (options.weld.asked || report.apart > 0) return;
   const double largest = std::max({options.scale.x, options.scale.y, options.scale.z});
-  const std::string distance = short_text(1e-3 * largest * median_edge(mesh), 1);
+  const std::string distance = rounded_text(1e-3 * largest * median_edge(mesh), 1);
   const std::size_t near = near_border_vertices(mesh, std::stod(distance) / largest);
   if (near > 0)
     notes.push_back(options.object + ": " + count_of(near, count) + " lie within " + distance +
@@ -138,11 +134,11 @@ std::string unit_note(const std::string& object, const std::vector<Vec3d>& posit
     units += (units.empty() ? "" : " or ") + std::string(unit.name);
     if (!factor.empty()) continue;
     const bool even = scale.x == scale.y && scale.y == scale.z;
-    factor = short_text(even ? scale.x * unit.metres : unit.metres, 6);
+    factor = rounded_text(even ? scale.x * unit.metres : unit.metres, 6);
     if (!even) factor += " times the present one";
-    result = short_text(largest * unit.metres);
+    result = rounded_text(largest * unit.metres);
   }
-  const std::string line = object + " is " + short_text(largest) + " m large";
+  const std::string line = object + " is " + rounded_text(largest) + " m large";
   if (units.empty())
     return line + ": is it in metres? \"transform\": {\"scale\": …} changes its size";
   return line + ": its file is probably in " + units + "; \"transform\": {\"scale\": " + factor +

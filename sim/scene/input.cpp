@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/json_reader.h"
+#include "sim/files/text.h"
 
 // A recording is JSON, one line a step:
 //   {"icloth_recording": 1, "scene": …, "build": …, "overrides": […], "steps": [
@@ -39,6 +41,17 @@ Json to_json(const InputEvent& event) {
   return json;
 }
 
+/// Weights of the corners at a point of a face; rays hit its border a little outside.
+Vec3d barycentric_from(const JsonValue& value) {
+  constexpr double kTolerance = 1e-3;
+  const Vec3d b = value.vector();
+  const bool inside = std::min({b.x, b.y, b.z}) >= -kTolerance &&
+                      std::max({b.x, b.y, b.z}) <= 1 + kTolerance &&
+                      std::abs(b.x + b.y + b.z - 1) <= kTolerance;
+  if (!inside) value.refuse("three weights from 0 to 1 whose sum is 1");
+  return b;
+}
+
 InputEvent event_from(const JsonValue& value) {
   JsonObject object(value);
   InputEvent event;
@@ -49,7 +62,7 @@ InputEvent event_from(const JsonValue& value) {
   event.handle = static_cast<int>(object.required("handle").integer(0, kLargestIndex));
   if (event.kind == InputEvent::Kind::grab) {
     event.face = static_cast<Index>(object.required("face").integer(0, kLargestIndex));
-    event.barycentric = object.required("barycentric").vector();
+    event.barycentric = barycentric_from(object.required("barycentric"));
     event.radius = object.number("radius", 0, kNotNegative);
     event.stiffness = object.number("stiffness", 0, kNotNegative);
   }
@@ -91,7 +104,7 @@ std::uint64_t hash_from(const JsonValue& value) {
 
 Recording load_recording(const std::string& path) {
   const nlohmann::json json = read_json(path);
-  JsonObject root(JsonValue(json, path));
+  JsonObject root(JsonValue(json, shown_path(path)));
   root.required("icloth_recording").integer(1, 1);
   Recording recording;
   recording.scene = root.required("scene").text();
@@ -105,6 +118,23 @@ Recording load_recording(const std::string& path) {
   recording.final_hash = hash_from(root.required("final_hash"));
   root.finish();
   return recording;
+}
+
+void check_recording(const Recording& recording, const Scene& scene, const std::string& path) {
+  std::size_t faces = 0;
+  for (const Cloth& cloth : scene.cloths) faces += cloth.mesh.faces.size();
+  for (std::size_t s = 0; s < recording.steps.size(); ++s) {
+    const std::vector<InputEvent>& events = recording.steps[s].events;
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const InputEvent& event = events[e];
+      if (event.kind != InputEvent::Kind::grab) continue;
+      if (event.face >= 0 && static_cast<std::size_t>(event.face) < faces) continue;
+      throw InputError(shown_path(path) + ": steps[" + std::to_string(s) + "].events[" +
+                       std::to_string(e) + "].face: value " + std::to_string(event.face) +
+                       ", expected 0 to " + std::to_string(static_cast<long long>(faces) - 1) +
+                       ", the faces of the cloths of scene " + in_quotes(scene.name));
+    }
+  }
 }
 
 void save_recording(const Recording& recording, const std::string& path) {

@@ -83,6 +83,9 @@ struct Recording {
 
 /// JSON, one line a step. Throws InputError naming file and element.
 Recording load_recording(const std::string& path);
+/// Throws InputError naming step and event of the first grab of a face that the scene's cloths do
+/// not have, as in a recording of another scene.
+void check_recording(const Recording& recording, const Scene& scene, const std::string& path);
 /// Written to a temporary beside `path` first, then renamed.
 void save_recording(const Recording& recording, const std::string& path);
 

@@ -8,6 +8,7 @@
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/json_reader.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -58,7 +59,7 @@ void read_orthotropic(const JsonValue& value, Material& material) {
   f.poisson = object.number("poisson", 0, {-10, 10});
   const double most = kLargestCoupling * std::sqrt(f.young_u / f.young_v);
   if (!(std::fabs(f.poisson) < most))
-    object["poisson"].refuse("|poisson| below 0.95 sqrt(E_u / E_v) = " + std::to_string(most));
+    object["poisson"].refuse("|poisson| below 0.95 sqrt(E_u / E_v) = " + rounded_text(most, 6));
   f.shear = object.required("shear").number(kPositive);
   if (object.has("thickness")) bend_as_sheet(f, object["thickness"].number({1e-6, 0.1}));
   if (object.has("bending")) {
@@ -143,9 +144,9 @@ Material load(const std::string& name, const std::string& folder, int depth) {
       is_file ? find_asset(name, folder) : assets_folder() + "/materials/" + name + ".json";
   std::error_code error;
   if (!is_file && !std::filesystem::exists(path, error))
-    throw InputError("material '" + name +
-                     "' is not known, expected a .json file or one of:" + asset_names("materials"));
-  return parse(read_json(path), path, std::filesystem::path(path).parent_path(), depth);
+    throw InputError("material " + in_quotes(name) +
+                     " is not known, expected a .json file or one of:" + asset_names("materials"));
+  return parse(read_json(path), shown_path(path), std::filesystem::path(path).parent_path(), depth);
 }
 
 }  // namespace

@@ -116,10 +116,11 @@ constexpr ParameterInfo kTable[] = {
     {"wind.z", "wind z", "m/s", wind<&Wind::z>, -50, 50, false, "air moves towards −z",
      "air moves towards +z", "still air"},
     {"wind.air_density", "air density", "kg/m³", wind<&Wind::air_density>, 0, 10, false,
-     "less pressure across the cloth, 0: no air at all", "wind pushes and still air brakes more",
-     "ARCSim; air is 1.2"},
+     "less pressure across the cloth; 0 together with air_drag 0: no air at all",
+     "wind pushes and still air brakes more", "ARCSim; air is 1.2"},
     {"wind.air_drag", "air drag along the cloth", "N·s/m³", wind<&Wind::air_drag>, 0, 10, false,
-     "air slips along the cloth", "air drags the cloth along", "ARCSim"},
+     "air slips along the cloth; pressure still brakes it as long as air_density is above 0",
+     "air drags the cloth along", "ARCSim"},
 
     {"material.stretch_scale", "stretching ×", "", material<&Fabric::stretch_scale>, 1e-3, 1e3,
      true, "softer in the plane, fewer iterations", "stiffer in the plane, more iterations",
@@ -265,13 +266,6 @@ std::string_view without_alias(std::string_view key) {
   return key;
 }
 
-/// Shortest text that reads back as the same number.
-std::string short_number(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, error == std::errc{} ? end : text};
-}
-
 std::string expected_range(const ParameterInfo& info) {
   if (const auto choices = info.field.choices; !choices.empty()) {
     std::string text = "one of";
@@ -280,15 +274,15 @@ std::string expected_range(const ParameterInfo& info) {
   }
   if (info.field.kind == ParameterInfo::Kind::boolean) return "true or false";
   const char* kind = info.field.kind == ParameterInfo::Kind::whole ? "a whole number" : "a number";
-  std::string text = std::string(kind) + " from " + short_number(info.minimum) + " to " +
-                     short_number(info.maximum);
+  std::string text =
+      std::string(kind) + " from " + number_text(info.minimum) + " to " + number_text(info.maximum);
   if (!info.unit.empty()) text += " " + std::string(info.unit);
   return text;
 }
 
 [[noreturn]] void refuse(const ParameterInfo& info, std::string_view value) {
-  throw InputError("parameter " + std::string(info.name) + ": value '" + std::string(value) +
-                   "', expected " + expected_range(info));
+  throw InputError("parameter " + std::string(info.name) + ": value " + in_quotes(value) +
+                   ", expected " + expected_range(info));
 }
 
 /// Number behind the text of --set; false when it is not one.
@@ -346,15 +340,15 @@ double get_parameter(const Parameters& parameters, const ParameterInfo& info) {
 void set_parameter(Parameters& parameters, const ParameterInfo& info, double value) {
   const bool whole = info.field.kind != ParameterInfo::Kind::number;
   if (!(value >= info.minimum && value <= info.maximum) || (whole && value != std::floor(value)))
-    refuse(info, short_number(value));
+    refuse(info, number_text(value));
   info.field.set(parameters, value);
 }
 
 void set_parameter(Parameters& parameters, std::string_view key, std::string_view value) {
   const ParameterInfo* info = find_parameter(key);
   if (!info)
-    throw InputError("parameter '" + std::string(key) + "' is not known, the nearest is '" +
-                     std::string(nearest_parameter(key)) + "'");
+    throw InputError("parameter " + in_quotes(key) + " is not known, the nearest is " +
+                     in_quotes(nearest_parameter(key)));
   double number = 0;
   if (!parse_value(value, *info, number)) refuse(*info, value);
   set_parameter(parameters, *info, number);

@@ -8,6 +8,7 @@
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/json_reader.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -66,7 +67,7 @@ const Preset& find_preset(std::string_view name) {
     if (preset.name == name) return preset;
     names += (names.empty() ? "" : ", ") + std::string(preset.name);
   }
-  throw InputError("preset '" + std::string(name) + "', expected one of " + names);
+  throw InputError("preset " + in_quotes(name) + ", expected one of " + names);
 }
 
 void apply_preset(Parameters& parameters, const Preset& preset) {

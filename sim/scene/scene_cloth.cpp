@@ -5,6 +5,7 @@
 #include "sim/files/assets.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/polygon.h"
+#include "sim/files/text.h"
 #include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/scene_json.h"
@@ -63,12 +64,13 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   }
   cloth.mesh = std::move(file.mesh);
   if (cloth.rest.empty()) cloth.rest = cloth.mesh.positions;
-  check_cloth_mesh(cloth.mesh, name.text());
-  check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, name.text() + " (rest shape)");
+  const std::string file_name = shown_path(name.text());
+  check_cloth_mesh(cloth.mesh, file_name);
+  check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, file_name + " (rest shape)");
 
   ClothMeshOptions options;
-  options.object = "cloth '" + cloth.name + "'";
-  options.file = name.text();
+  options.object = "cloth " + in_quotes(cloth.name);
+  options.file = file_name;
   if (object.has("weld")) options.weld = parse_weld(object["weld"]);
   if (object.has("transform")) options.scale = parse_transform(object["transform"]).scale;
   if (object.has("subdivide"))

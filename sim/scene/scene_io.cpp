@@ -10,11 +10,13 @@
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 #include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/presets.h"
 #include "sim/scene/repair.h"
 #include "sim/scene/scene_json.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {
@@ -31,16 +33,16 @@ double parse_triangles(std::string_view text, Index most) {
   Index number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || rest != text.data() + text.size() || number < 2 || number > most)
-    throw InputError("--set triangles: value '" + std::string(text) +
-                     "', expected a whole number from 2 to " + std::to_string(most));
+    throw InputError("--set triangles: value " + in_quotes(text) +
+                     ", expected a whole number from 2 to " + std::to_string(most));
   return number;
 }
 
 bool parse_switch(std::string_view key, std::string_view value) {
   if (value == "on" || value == "true" || value == "1") return true;
   if (value == "off" || value == "false" || value == "0") return false;
-  throw InputError("--set " + std::string(key) + ": value '" + std::string(value) +
-                   "', expected on or off");
+  throw InputError("--set " + excerpt(key) + ": value " + in_quotes(value) +
+                   ", expected on or off");
 }
 
 Overrides split_overrides(std::span<const std::string> arguments, const SceneLimits& limits) {
@@ -48,7 +50,7 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
   for (std::string_view argument : arguments) {
     const std::size_t equals = argument.find('=');
     if (equals == std::string_view::npos || equals == 0)
-      throw InputError("--set: value '" + std::string(argument) + "', expected KEY=VALUE");
+      throw InputError("--set: value " + in_quotes(argument) + ", expected KEY=VALUE");
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
     if (key == "preset") {
       const auto settings = find_preset(value).settings;
@@ -107,11 +109,9 @@ void hang_by_highest(Cloth& cloth) {
 }
 
 CameraPose framing_camera(const std::vector<Vec3d>& points) {
-  Vec3d low = points.front(), high = low;
-  for (Vec3d p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  Bounds bounds;
+  for (Vec3d p : points) bounds.add(p);
+  const auto [low, high] = bounds;
   CameraPose camera;
   const double radius = std::max(0.5 * norm(high - low), 1e-3);
   camera.target = 0.5 * (low + high);
@@ -126,11 +126,11 @@ Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
   Cloth cloth;
   cloth.name = scene.name;
   cloth.mesh = read_mesh(path).mesh;
-  check_cloth_mesh(cloth.mesh, path);
+  check_cloth_mesh(cloth.mesh, shown_path(path));
   cloth.mesh.uv.clear();  // may be texture coordinates of any size
   cloth.rest = cloth.mesh.positions;
   ClothMeshOptions options;
-  options.object = "cloth '" + cloth.name + "'";
+  options.object = "cloth " + in_quotes(cloth.name);
   options.file = path;
   origin.layouts.push_back(prepare_cloth_mesh(cloth, options, origin.notes));
   const std::string note = unit_note(options.object, cloth.mesh.positions, {1, 1, 1}, true);
@@ -154,22 +154,42 @@ std::string scene_path(const std::string& argument) {
   std::error_code error;
   if (!fs::exists(path, error))
     throw InputError(
-        "scene '" + argument +
-        "' is not known, expected a .json, .obj or .ply file or one of:" + asset_names("scenes"));
+        "scene " + in_quotes(argument) +
+        " is not known, expected a .json, .obj or .ply file or one of:" + asset_names("scenes"));
   return path;
 }
 
+/// Which of the parameters of the air the scene or the command line sets.
+struct AirSettings {
+  bool drag = false, density = false;
+};
+
+/// In still air the pressure on a moving cloth brakes it as drag does, and it depends on the
+/// density. Whoever sets the drag to 0 and says nothing about the density wants no air.
+void still_air_without_drag(Scene& scene, const AirSettings& set, SceneOrigin& origin) {
+  WindParameters& wind = scene.parameters.wind;
+  const bool is_still = wind.x == 0 && wind.y == 0 && wind.z == 0;
+  if (!set.drag || set.density || wind.air_drag != 0 || !is_still || wind.air_density == 0) return;
+  wind.air_density = 0;
+  origin.notes.emplace_back(
+      "wind.air_drag is 0 in still air: wind.air_density is set to 0 too, so that nothing brakes "
+      "the cloth; set it to keep the pressure");
+}
+
 Scene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits,
-                    SceneOrigin& origin) {
+                    AirSettings& air, SceneOrigin& origin) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
+  air.drag = sets_parameter(json, "wind", "air_drag");
+  air.density = sets_parameter(json, "wind", "air_density");
   SceneFolder folder{fs::path(path).parent_path().string(), 1, limits, nullptr};
   if (triangles > 0) {
     const double own = total_grid_triangles(json);
-    if (!(own > 0)) throw InputError(path + ": --set triangles: no cloth of the scene is a grid");
+    if (!(own > 0))
+      throw InputError(shown_path(path) + ": --set triangles: no cloth of the scene is a grid");
     folder.triangle_scale = triangles / own;
   }
-  return parse_scene(json, path, folder, origin);
+  return parse_scene(json, shown_path(path), folder, origin);
 }
 
 }  // namespace
@@ -179,14 +199,15 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         const SceneLimits& limits, SceneOrigin* origin) {
   SceneOrigin own;
   if (!origin) origin = &own;
+  AirSettings air;
   const Overrides set = split_overrides(overrides, limits);
   auto scene = std::make_shared<Scene>();
   if (is_mesh_name(argument)) {
     if (set.triangles > 0)
-      throw InputError(argument + ": --set triangles: a mesh file has no grid");
+      throw InputError(shown_path(argument) + ": --set triangles: a mesh file has no grid");
     *scene = scene_of_mesh(argument, *origin);
   } else {
-    *scene = scene_of_json(argument, set.triangles, limits, *origin);
+    *scene = scene_of_json(argument, set.triangles, limits, air, *origin);
     if (set.triangles > 0) fit_thickness(*scene);
   }
   scene->source = argument;
@@ -196,7 +217,12 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
       points.insert(points.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
     if (!points.empty()) scene->cameras.push_back(framing_camera(points));
   }
-  for (const auto& [key, value] : set.parameters) set_parameter(scene->parameters, key, value);
+  for (const auto& [key, value] : set.parameters) {
+    set_parameter(scene->parameters, key, value);
+    air.drag = air.drag || key == "wind.air_drag";
+    air.density = air.density || key == "wind.air_density";
+  }
+  still_air_without_drag(*scene, air, *origin);
   if (set.repair_start) repair_start(*scene, median_edge(*scene));
   return scene;
 }

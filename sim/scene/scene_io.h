@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/files/weld.h"
 #include "sim/scene/scene.h"

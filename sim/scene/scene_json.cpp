@@ -21,8 +21,19 @@ void set_from_json(Parameters& parameters, const std::string& name, const JsonVa
   const auto& json = value.json();
   if (!json.is_number() && !json.is_boolean() && !json.is_string())
     value.refuse("a number, true or false, or the name of a choice");
+
+  // A number is set as it is; what does not fit the parameter's kind is refused by its text.
+  const ParameterInfo* info = find_parameter(name);
+  const bool is_switch = info && info->field.kind == ParameterInfo::Kind::boolean;
+  const bool is_choice = info && info->field.kind == ParameterInfo::Kind::choice;
   try {
-    set_parameter(parameters, name, json.is_string() ? json.get<std::string>() : json.dump());
+    if (info && json.is_number() && !is_choice) {
+      set_parameter(parameters, *info, json.get<double>());
+    } else if (is_switch && json.is_boolean()) {
+      set_parameter(parameters, *info, json.get<bool>() ? 1 : 0);
+    } else {
+      set_parameter(parameters, name, json.is_string() ? json.get<std::string>() : json.dump());
+    }
   } catch (const InputError& error) {
     throw InputError(value.where() + ": " + error.what());
   }
@@ -103,18 +114,18 @@ void check_name(const std::string& where, const Object& object, std::set<std::st
       !object.name.empty() &&
       std::ranges::all_of(object.name, [](unsigned char c) { return c > ' ' && c != 127; });
   if (!is_word || !names.insert(object.name).second)
-    throw InputError(where + ".name: value \"" + object.name +
+    throw InputError(where + ".name: value \"" + excerpt(object.name) +
                      "\", expected one word that no other such object has");
 }
 
 void check_total(const std::string& where, double triangles, const SceneLimits& limits) {
   if (triangles > limits.triangles)
-    throw InputError(where + ": value " + std::to_string(triangles) +
-                     " triangles, expected at most " + std::to_string(limits.triangles));
+    throw InputError(where + ": value " + number_text(triangles) + " triangles, expected at most " +
+                     std::to_string(limits.triangles));
 }
 
 void parse_settings(JsonObject& object, Scene& scene) {
-  scene.name = object.text("name", scene.source);
+  scene.name = excerpt(object.text("name", scene.source));
   object.text("description", "");
   scene.duration = object.number("duration", scene.duration, {1e-4, kMaxTime});
   if (object.has("time_step"))
@@ -198,6 +209,18 @@ CameraPose parse_camera(JsonValue value) {
   if (!(norm(across) > 0)) value.refuse("eye and target apart, and not along up");
   object.finish();
   return camera;
+}
+
+bool sets_parameter(const nlohmann::json& scene, const std::string& group, const std::string& key) {
+  const auto holds = [](const nlohmann::json& object, const std::string& name) {
+    return object.is_object() && object.contains(name);
+  };
+  if (!scene.is_object()) return false;
+  if (group == "wind" && scene.contains("wind") && holds(scene["wind"], key)) return true;
+  if (!scene.contains("parameters")) return false;
+  const nlohmann::json& parameters = scene["parameters"];
+  return holds(parameters, group + "." + key) ||
+         (holds(parameters, group) && holds(parameters[group], key));
 }
 
 Scene parse_scene(const nlohmann::json& json, const std::string& source,

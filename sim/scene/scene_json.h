@@ -71,6 +71,9 @@ void parse_parameters(JsonValue value, const std::string& group, Parameters& par
 /// the vertex.
 Index parse_vertex(JsonValue value, const LoadedCloth& cloth);
 
+/// Whether a scene file sets a parameter, by its dotted name or in a group; wind also in "wind".
+bool sets_parameter(const nlohmann::json& scene, const std::string& group, const std::string& key);
+
 /// Whole scene. `source` is the name for messages.
 Scene parse_scene(const nlohmann::json& json, const std::string& source, const SceneFolder& folder,
                   SceneOrigin& origin);

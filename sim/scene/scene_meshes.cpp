@@ -45,4 +45,19 @@ SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
   return result;
 }
 
+SceneFaces scene_faces(const Scene& scene) {
+  SceneFaces soup;
+  Index first = 0;
+  const auto append = [&](const TriangleMesh& mesh, int group) {
+    for (const Triangle& t : mesh.faces)
+      soup.faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+    soup.group.resize(soup.faces.size(), group);
+    first += static_cast<Index>(mesh.positions.size());
+  };
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    append(scene.cloths[c].mesh, static_cast<int>(c));
+  for (const Obstacle& obstacle : scene.obstacles) append(obstacle.mesh, -1);
+  return soup;
+}
+
 }  // namespace icloth

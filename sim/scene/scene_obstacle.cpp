@@ -1,10 +1,14 @@
 // Obstacles of a scene file.
+#include <algorithm>
+
 #include "sim/files/assets.h"
 #include "sim/files/body_io.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 #include "sim/scene/cloth_mesh.h"
 #include "sim/scene/scene_json.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {
@@ -26,6 +30,50 @@ std::vector<Keyframe> parse_motion(const JsonValue& value) {
   return motion;
 }
 
+/// Clips are not played yet; a user who brings one must hear of it.
+void note_clips(const Body& body, const std::string& file, const std::string& object,
+                const SceneFolder& folder) {
+  constexpr std::size_t kMostNamed = 4;
+  if (body.clips.empty()) {
+    if (body.bones > 0)
+      folder.note(object + ": " + file + " has a skeleton of " + std::to_string(body.bones) +
+                  " bones but no animation: the body keeps its bind pose");
+    return;
+  }
+
+  // The first few by name, each with its length.
+  std::string names;
+  for (std::size_t i = 0; i < std::min(body.clips.size(), kMostNamed); ++i) {
+    const BodyClip& clip = body.clips[i];
+    names += i > 0 ? ", " : "";
+    names += clip.name.empty() ? "without a name" : in_quotes(clip.name);
+    if (clip.duration > 0) names += " (" + brief_number(clip.duration) + " s)";
+  }
+  if (body.clips.size() > kMostNamed)
+    names += " and " + std::to_string(body.clips.size() - kMostNamed) + " more";
+  folder.note(object + ": " + file + " holds the animation " + names +
+              ", which is not played: the body keeps its bind pose");
+}
+
+/// A body starts where frame 0 of its cache is, which may be far from the mesh in the scene.
+void note_distance(const Obstacle& obstacle, const std::string& file, const SceneFolder& folder) {
+  double farthest = 0;
+  std::size_t vertex = 0;
+  Bounds bounds;
+  for (std::size_t v = 0; v < obstacle.mesh.positions.size(); ++v) {
+    bounds.add(obstacle.mesh.positions[v]);
+    const double distance =
+        norm(convert<double>(obstacle.frames.front()[v]) - obstacle.mesh.positions[v]);
+    if (distance > farthest) farthest = distance, vertex = v;
+  }
+
+  // Caches are in single precision, and meshes are written with few digits.
+  if (farthest <= std::max(1e-5, 1e-4 * norm(bounds.high - bounds.low))) return;
+  folder.note("obstacle " + in_quotes(obstacle.name) + ": frame 0 of " + file + " is up to " +
+              brief_number(1e3 * farthest) + " mm away from the mesh (vertex " +
+              std::to_string(vertex) + "): the body starts at frame 0 of its animation");
+}
+
 void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Placement& place,
                        Obstacle& obstacle) {
   const std::string& name = object["animation"].text();
@@ -37,6 +85,7 @@ void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Plac
   obstacle.frames = std::move(cache.frames);
   for (auto& frame : obstacle.frames)
     for (Vec3f& p : frame) p = convert<float>(place(convert<double>(p)));
+  note_distance(obstacle, shown_path(name), folder);
 }
 
 }  // namespace
@@ -45,17 +94,29 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   JsonObject object(value);
   Obstacle obstacle;
   obstacle.name = object.text("name", "obstacle" + std::to_string(number));
+
+  // The surface: a file, of which not everything may be used, or a shape.
   const JsonValue mesh = object.required("mesh");
-  obstacle.mesh = mesh.json().is_string() ? read_body(find_asset(mesh.text(), folder.path))
-                                          : parse_body_shape(mesh, folder.limits.body_triangles);
+  if (mesh.json().is_string()) {
+    Body body = read_body(find_asset(mesh.text(), folder.path));
+    obstacle.mesh = std::move(body.mesh);
+    if (!object.has("animation"))
+      note_clips(body, shown_path(mesh.text()), "obstacle " + in_quotes(obstacle.name), folder);
+  } else {
+    obstacle.mesh = parse_body_shape(mesh, folder.limits.body_triangles);
+  }
+
+  // Where it is, and how large.
   Placement place;
   if (object.has("transform")) place = parse_transform(object["transform"]);
   for (Vec3d& p : obstacle.mesh.positions) p = place(p);
   if (mesh.json().is_string()) {
-    const std::string note =
-        unit_note("obstacle '" + obstacle.name + "'", obstacle.mesh.positions, place.scale, false);
+    const std::string note = unit_note("obstacle " + in_quotes(obstacle.name),
+                                       obstacle.mesh.positions, place.scale, false);
     if (!note.empty()) folder.note(note);
   }
+
+  // How it moves, and how cloth slides on it.
   if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
   obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);

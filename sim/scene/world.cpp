@@ -5,6 +5,7 @@
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -21,7 +22,7 @@ struct HalfEdge {
 double cross2(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 
 std::string element(const Cloth& cloth, const char* kind, std::size_t number) {
-  return "cloth '" + cloth.name + "', " + kind + " " + std::to_string(number);
+  return "cloth " + in_quotes(cloth.name) + ", " + kind + " " + std::to_string(number);
 }
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -50,14 +51,15 @@ void check_finite(const std::string& object, const std::vector<Vec3d>& positions
 void check_cloth(const Cloth& cloth) {
   const std::size_t count = cloth.mesh.positions.size();
   if (!cloth.rest.empty() && cloth.rest.size() != count)
-    throw InputError("cloth '" + cloth.name + "': the rest shape has " +
+    throw InputError("cloth " + in_quotes(cloth.name) + ": the rest shape has " +
                      std::to_string(cloth.rest.size()) + " vertices, expected " +
                      std::to_string(count));
   if (!cloth.mesh.uv.empty() && cloth.mesh.uv.size() != cloth.mesh.faces.size())
-    throw InputError("cloth '" + cloth.name + "': uv of " + std::to_string(cloth.mesh.uv.size()) +
-                     " faces, expected " + std::to_string(cloth.mesh.faces.size()));
-  check_finite("cloth '" + cloth.name + "'", cloth.mesh.positions);
-  check_finite("cloth '" + cloth.name + "' (rest shape)", cloth.rest);
+    throw InputError("cloth " + in_quotes(cloth.name) + ": uv of " +
+                     std::to_string(cloth.mesh.uv.size()) + " faces, expected " +
+                     std::to_string(cloth.mesh.faces.size()));
+  check_finite("cloth " + in_quotes(cloth.name), cloth.mesh.positions);
+  check_finite("cloth " + in_quotes(cloth.name) + " (rest shape)", cloth.rest);
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
     for (Index v : cloth.mesh.faces[f])
       if (v < 0 || at(v) >= count)
@@ -65,7 +67,7 @@ void check_cloth(const Cloth& cloth) {
                          ", expected 0 to " + std::to_string(count - 1));
   for (Index v : cloth.pins)
     if (v < 0 || at(v) >= count)
-      throw InputError("cloth '" + cloth.name + "': pinned vertex " + std::to_string(v) +
+      throw InputError("cloth " + in_quotes(cloth.name) + ": pinned vertex " + std::to_string(v) +
                        ", expected 0 to " + std::to_string(count - 1));
 }
 
@@ -170,7 +172,7 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
     const Vec2d a = corners[f][1] - corners[f][0], b = corners[f][2] - corners[f][0];
     const double det = cross2(a, b), area = 0.5 * std::fabs(det);
     if (!(area >= kSmallestArea && rest_area(cloth, cloth.mesh.faces[f]) >= kSmallestArea))
-      throw InputError(element(cloth, "face", f) + ": rest area " + std::to_string(area) +
+      throw InputError(element(cloth, "face", f) + ": rest area " + number_text(area) +
                        " m², expected more than 1e-12");
     world.face_area.push_back(area);
     world.face_inverse.push_back({b.y / det, -b.x / det, -a.y / det, a.x / det});
@@ -274,7 +276,7 @@ World make_world(const Scene& scene) {
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
     const Obstacle& obstacle = scene.obstacles[o];
     obstacle.pose(0.0, pose);
-    check_finite("obstacle '" + obstacle.name + "'", pose);
+    check_finite("obstacle " + in_quotes(obstacle.name), pose);
     append_object(world, obstacle.name, false, o, obstacle.mesh, pose, obstacle.friction);
     append_edges(world, world.objects.back(), nullptr, {});
   }

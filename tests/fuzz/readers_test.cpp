@@ -103,6 +103,43 @@ TEST_P(Readers, StandCutAndChangedSeeds) {
   }
 }
 
+/// Long words where the readers expect keys, values, counts and names.
+std::vector<std::string> garbage_for(std::string_view target) {
+  const std::string x(5000, 'x'), y = "\x1b[31m" + x;
+  if (target == "obj") return {"v 0 0 " + x, "v 0 0 0\nf 1 1 " + y, "vt " + y, x};
+  if (target == "ply")
+    return {"ply\nformat " + x + "\n", "ply\nformat ascii 1.0\nelement " + x + " -1\nend_header\n",
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty " + y + " x\nend_header\n",
+            "ply\nformat ascii 1.0\nelement " + x + " 1\nproperty int a\nend_header\n" + x + "\n"};
+  if (target == "query") return {"vf," + x + ",", x + ",1", "vf" + y};
+  if (target == "pc2" || target == "mdd") return {x, "POINTCACHE2" + x};
+  std::string deep = "1";
+  for (int k = 0; k < 3000; ++k) deep = "[" + deep + "]";
+  return {"{\"" + x + "\": 1}",
+          "{\"name\": " + x + "}",
+          "{\"cloths\": \"" + x + "\"}",
+          x,
+          "{\"parameters\": {\"" + x + "\": 1}, \"cloths\": []}",
+          "{\"parameters\": {\"implicit.integrator\": \"" + x + "\"}, \"cloths\": []}",
+          "{\"cloths\": [{\"name\": \"c\", \"mesh\": \"" + x + ".obj\"}]}",
+          "{\"cloths\": [{\"name\": \"c\", \"material\": \"" + x + "\", \"mesh\": \"flat.obj\"}]}",
+          "{\"cloths\": " + deep + "}",
+          "{\"base\": \"" + x + "\"}",
+          "{\"density\": \"" + x + "\"}",
+          "{\"icloth_recording\": \"" + x + "\"}",
+          "{\"steps\": [{\"" + x + "\": 1}]}"};
+}
+
+TEST_P(Readers, RepeatLittleOfLongGarbage) {
+  for (const std::string& bytes : garbage_for(GetParam().name)) {
+    std::string reason;
+    EXPECT_NO_THROW(reason = GetParam().read(bytes));  // checks that it is one line
+    EXPECT_EQ(reason.find(std::string(81, 'x')), std::string::npos) << reason;
+    EXPECT_EQ(reason.find('\x1b'), std::string::npos) << reason;
+    EXPECT_LT(reason.size(), 500u) << reason;
+  }
+}
+
 std::string name_of(const testing::TestParamInfo<Target>& test) {
   return std::string(test.param.name);
 }

@@ -7,6 +7,7 @@
 #include "app/common/element_names.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 #include "sim/files/weld.h"
 
 namespace icloth {
@@ -45,7 +46,7 @@ struct Soup {
     // Indices are 32 bits, and the sum of all files must fit.
     if (positions.size() + mesh.positions.size() > (1u << 30) ||
         faces.size() + mesh.faces.size() > (1u << 30))
-      throw InputError(path + ": expected at most 2^30 vertices and faces together");
+      throw InputError(shown_path(path) + ": expected at most 2^30 vertices and faces together");
 
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const Triangle& t : mesh.faces)

@@ -7,6 +7,7 @@
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
+#include "sim/files/text.h"
 #include "sim/simulator.h"
 
 namespace icloth {
@@ -16,16 +17,17 @@ namespace {
 void check_same_topology(const DetectOptions& options, const TriangleMesh& a,
                          const TriangleMesh& b) {
   if (a.positions.size() != b.positions.size())
-    throw InputError(options.end + ": " + std::to_string(b.positions.size()) +
+    throw InputError(shown_path(options.end) + ": " + std::to_string(b.positions.size()) +
                      " vertices, expected " + std::to_string(a.positions.size()) + " as in " +
-                     options.start);
+                     shown_path(options.start));
   if (a.faces.size() != b.faces.size())
-    throw InputError(options.end + ": " + std::to_string(b.faces.size()) + " faces, expected " +
-                     std::to_string(a.faces.size()) + " as in " + options.start);
+    throw InputError(shown_path(options.end) + ": " + std::to_string(b.faces.size()) +
+                     " faces, expected " + std::to_string(a.faces.size()) + " as in " +
+                     shown_path(options.start));
   for (std::size_t f = 0; f < a.faces.size(); ++f)
     if (a.faces[f] != b.faces[f])
-      throw InputError(options.end + ": face " + std::to_string(f) +
-                       " has other vertices, expected those of " + options.start);
+      throw InputError(shown_path(options.end) + ": face " + std::to_string(f) +
+                       " has other vertices, expected those of " + shown_path(options.start));
 }
 
 /// Adds a line of comma-separated numbers.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 
 #if defined(ICLOTH_HAS_ZLIB)
 #include <zlib.h>
@@ -29,13 +30,6 @@ std::string_view take_field(std::string_view& line) {
   const std::string_view field = line.substr(0, comma);
   line = comma == std::string_view::npos ? std::string_view{} : line.substr(comma + 1);
   return trimmed(field);
-}
-
-/// The field in quotes, cut after 40 characters.
-std::string quoted(std::string_view field) {
-  std::string out(1, '\'');
-  out.append(field.substr(0, 40));
-  return out.append(field.size() > 40 ? "…'" : "'");
 }
 
 /// The content of column 0 … 23 in the user's words.
@@ -81,20 +75,21 @@ struct QueryFile::Bytes {
 QueryFile::QueryFile(const std::string& path) : path_(path) {
 #if !defined(ICLOTH_HAS_ZLIB)
   if (path.ends_with(".gz")) {
-    throw InputError(path +
+    throw InputError(shown_path(path) +
                      ": compressed query files need a build with zlib (package zlib1g-dev); "
                      "expected a plain .csv");
   }
 #endif
   bytes_ = std::make_unique<Bytes>(path);
-  if (!bytes_->file) throw InputError(path + ": cannot be opened; expected a CSV file of queries");
+  if (!bytes_->file)
+    throw InputError(shown_path(path) + ": cannot be opened; expected a CSV file of queries");
 }
 
 QueryFile::~QueryFile() = default;
 
 /// Throws InputError with the place in the file.
 void QueryFile::refuse(const std::string& what) const {
-  throw InputError(path_ + ":" + std::to_string(line_number_) + ": " + what);
+  throw InputError(shown_path(path_) + ":" + std::to_string(line_number_) + ": " + what);
 }
 
 /// Reads another chunk behind the part that was not used yet. False at the end of the file.
@@ -105,8 +100,8 @@ bool QueryFile::fill() {
   buffer_.resize(kept + kChunk);
   const long count = bytes_->read(buffer_.data() + kept, kChunk);
   if (count < 0) {
-    throw InputError(path_ + ": cannot be read after line " + std::to_string(line_number_) +
-                     "; the file is damaged or cut off");
+    throw InputError(shown_path(path_) + ": cannot be read after line " +
+                     std::to_string(line_number_) + "; the file is damaged or cut off");
   }
   buffer_.resize(kept + static_cast<std::size_t>(count));
   return count > 0;
@@ -154,7 +149,7 @@ double QueryFile::number(std::string_view field, int column) const {
   // The whole field has to be one finite number, with one sign at most.
   const bool doubled_sign = digits.starts_with('-');
   if (result.ec != std::errc{} || result.ptr != end || doubled_sign || !std::isfinite(value)) {
-    refuse(column_name(column) + " is " + quoted(field) + ", expected a finite number");
+    refuse(column_name(column) + " is " + in_quotes(field) + ", expected a finite number");
   }
   return negative ? -value : value;
 }
@@ -170,7 +165,7 @@ bool QueryFile::next(FileQuery& out) {
   }
 
   const std::string_view kind = take_field(line);
-  if (kind != "vf" && kind != "ee") refuse("kind is " + quoted(kind) + ", expected vf or ee");
+  if (kind != "vf" && kind != "ee") refuse("kind is " + in_quotes(kind) + ", expected vf or ee");
   out.kind = kind == "vf" ? PairKind::vf : PairKind::ee;
 
   // The 24 coordinates stand in the order point by point, first at t = 0 and then at t = 1.
@@ -184,7 +179,7 @@ bool QueryFile::next(FileQuery& out) {
   // The expected result is optional.
   const std::string_view expected = take_field(line);
   if (expected != "" && expected != "0" && expected != "1") {
-    refuse("expected result is " + quoted(expected) + ", expected 0 or 1");
+    refuse("expected result is " + in_quotes(expected) + ", expected 0 or 1");
   }
   out.expected = expected.empty() ? -1 : expected == "1";
   return true;

@@ -8,14 +8,17 @@
 #include <sstream>
 
 #include "app/common/camera_json.h"
+#include "app/common/element_names.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_io.h"
+#include "sim/scene/scene_meshes.h"
 
 namespace icloth {
 namespace {
@@ -35,7 +38,8 @@ Size parse_size(const std::string& text) {
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 16384; };
   if (!cross || height.ec != std::errc() || height.ptr != end || !fits(size.width) ||
       !fits(size.height)) {
-    throw InputError("--size " + text + ": expected WIDTHxHEIGHT, both from 16 to 16384 pixels");
+    throw InputError("--size " + excerpt(text) +
+                     ": expected WIDTHxHEIGHT, both from 16 to 16384 pixels");
   }
   return size;
 }
@@ -63,21 +67,24 @@ VertexOptions choose_vertices(const RenderOptions& options, Build build) {
 void check_out(const std::string& out) {
   const std::filesystem::path path(out);
   if (path.extension() == ".mp4")
-    throw InputError("--out " + out + ": videos are not supported, expected FILE.png");
-  if (path.extension() != ".png") throw InputError("--out " + out + ": expected FILE.png");
+    throw InputError("--out " + shown_path(out) + ": videos are not supported, expected FILE.png");
+  if (path.extension() != ".png")
+    throw InputError("--out " + shown_path(out) + ": expected FILE.png");
   if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
-    throw InputError("--out " + out + ": there is no folder '" + path.parent_path().string() + "'");
+    throw InputError("--out " + shown_path(out) + ": there is no folder " +
+                     in_quotes(path.parent_path().string()));
 }
 
 /// Reads a camera from a JSON file.
 Camera camera_from_file(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw InputError("--camera " + path + ": cannot be read, expected a JSON file");
+  if (!file)
+    throw InputError("--camera " + shown_path(path) + ": cannot be read, expected a JSON file");
   std::ostringstream text;
   text << file.rdbuf();
   const auto pose = camera_from_json(text.str());
   if (!pose) {
-    throw InputError("--camera " + path +
+    throw InputError("--camera " + shown_path(path) +
                      ": no camera, expected an object with 'eye' and 'target' "
                      "of three numbers each");
   }
@@ -87,12 +94,9 @@ Camera camera_from_file(const std::string& path) {
 /// A camera that sees the whole start state from the front, slightly from above.
 Camera camera_on_everything(const World& world, double aspect) {
   Camera camera(CameraPose{"", {0.25, 0.22, 1}, {0, 0, 0}, {0, 1, 0}, 32});
-  Vec3d low = world.position.front(), high = low;
-  for (const Vec3d p : world.position) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  camera.frame_box(low, high, aspect);
+  Bounds bounds;
+  for (const Vec3d p : world.position) bounds.add(p);
+  camera.frame_box(bounds.low, bounds.high, aspect);
   return camera;
 }
 
@@ -103,36 +107,11 @@ Camera choose_camera(const RenderOptions& options, const Scene& scene, const Wor
   std::string names;
   for (const CameraPose& pose : scene.cameras) {
     if (options.camera.empty() || pose.name == options.camera) return Camera(pose);
-    names += (names.empty() ? "'" : ", '") + pose.name + "'";
+    names += (names.empty() ? "" : ", ") + in_quotes(pose.name);
   }
   if (options.camera.empty()) return camera_on_everything(world, aspect);
-  throw InputError("--camera " + options.camera + ": not in the scene, expected " +
+  throw InputError("--camera " + excerpt(options.camera) + ": not in the scene, expected " +
                    (names.empty() ? "FILE.json" : names + " or FILE.json"));
-}
-
-/// The faces that a refused step could not bring apart. Both elements of every pair are shown by
-/// the faces that hold the whole element.
-std::vector<Index> offending_faces(const World& world, const StepReport& report) {
-  // Each pair gives two elements, as lists of vertices.
-  std::vector<std::vector<Index>> elements;
-  for (const OffendingPair& pair : report.offending) {
-    const auto& v = pair.vertices;
-    const std::size_t split = pair.edge_edge ? 2 : 1;
-    elements.emplace_back(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(split));
-    elements.emplace_back(v.begin() + static_cast<std::ptrdiff_t>(split), v.end());
-  }
-
-  // A face is marked if it holds all vertices of one of them.
-  std::vector<Index> faces;
-  for (Index f = 0; f < world.faces && !elements.empty(); ++f) {
-    const Triangle& t = world.face[static_cast<std::size_t>(f)];
-    const bool holds = std::any_of(elements.begin(), elements.end(), [&](const auto& element) {
-      return std::all_of(element.begin(), element.end(),
-                         [&](Index v) { return std::find(t.begin(), t.end(), v) != t.end(); });
-    });
-    if (holds) faces.push_back(f);
-  }
-  return faces;
 }
 
 /// The content of the picture: the last state that was reached.
@@ -186,7 +165,8 @@ int run_render(const RenderOptions& options) {
   Shown shown;
   job.watch = [&](const Simulator& simulator, const StepReport* report) {
     if (report) stats.add(*report);
-    if (report && !report->accepted) shown.marked_faces = offending_faces(world, *report);
+    if (report && !report->accepted)
+      shown.marked_faces = faces_of_pairs(world.face, report->offending);
     if (simulator.step_index() < job.steps && (!report || report->accepted)) return;
     simulator.positions_on_device(shown.on_device);
     simulator.positions(shown.positions);

@@ -14,6 +14,7 @@ int run_replay(const ReplayOptions& options) {
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
   job.scene = load_scene(recording.scene, recording.overrides, {}, &job.origin);
+  check_recording(recording, *job.scene, options.recording);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
     if (build_name(build) == recording.build) job.build = build;

@@ -8,6 +8,7 @@
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
 #include "sim/files/frame_export.h"
+#include "sim/files/text.h"
 #include "sim/scene/scene_io.h"
 #include "sim/scene/scene_meshes.h"
 
@@ -20,8 +21,8 @@ void check(const RunOptions& options) {
     throw InputError("--export " + options.exports.front() + ": expected --out DIR with it");
   const std::filesystem::path record(options.record_file);
   if (record.has_parent_path() && !std::filesystem::is_directory(record.parent_path()))
-    throw InputError("--record " + options.record_file + ": there is no folder '" +
-                     record.parent_path().string() + "'");
+    throw InputError("--record " + shown_path(options.record_file) + ": there is no folder " +
+                     in_quotes(record.parent_path().string()));
 }
 
 /// The command that repeats a run up to a failed step.
@@ -64,6 +65,7 @@ int run_run(const RunOptions& options) {
   Recording input, record;
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
+    check_recording(input, *job.scene, options.input_file);
     job.input = &input;
   }
 

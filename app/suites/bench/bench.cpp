@@ -7,6 +7,7 @@
 #include "app/suites/bench/stability.h"
 #include "app/suites/bench/validation.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 
@@ -17,8 +18,8 @@ int run_bench(const BenchOptions& options) {
   if (options.suite == "stability") return run_stability(options);
   if (options.suite == "validation") return run_validation(options);
   if (options.suite == "solver") return run_solver(options);
-  throw InputError("bench: suite '" + options.suite +
-                   "', expected quick, paper, accuracy, stability, validation or solver");
+  throw InputError("bench: suite " + in_quotes(options.suite) +
+                   ", expected quick, paper, accuracy, stability, validation or solver");
 }
 
 }  // namespace icloth

@@ -34,18 +34,9 @@ Simulator& CaseRun::start(std::shared_ptr<const Scene> scene) {
   require(pairs.empty(), "the start state of the case is free of intersections");
 
   // The faces of all objects are listed for the exact check of every state.
-  faces_.clear();
-  group_.clear();
-  Index first = 0;
-  const auto append = [&](const TriangleMesh& mesh, int number) {
-    for (const Triangle& t : mesh.faces)
-      faces_.push_back({t[0] + first, t[1] + first, t[2] + first});
-    group_.resize(faces_.size(), number);
-    first += static_cast<Index>(mesh.positions.size());
-  };
-
-  for (const Cloth& cloth : scene->cloths) append(cloth.mesh, 0);
-  for (const Obstacle& obstacle : scene->obstacles) append(obstacle.mesh, -1);
+  SceneFaces soup = scene_faces(*scene);
+  faces_ = std::move(soup.faces);
+  group_ = std::move(soup.group);
   simulator_ = make_simulator(settings_.build, std::move(scene));
   return *simulator_;
 }

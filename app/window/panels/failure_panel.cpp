@@ -1,5 +1,6 @@
 // The panel of a failure: it is explained in a sentence, shown on the mesh, and comes with
 // remedies.
+#include "app/common/element_names.h"
 #include "app/window/panels/panel.h"
 #include "app/window/theme.h"
 
@@ -9,22 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxListed = 50;
 
-std::string face_text(const World& world, Index face) {
-  for (const WorldObject& object : world.objects) {
-    if (face >= object.first_face && face < object.first_face + object.face_count) {
-      return (object.cloth ? "cloth " : "obstacle ") + object.name + " face " +
-             std::to_string(face - object.first_face);
-    }
-  }
-  return "face " + std::to_string(face);
-}
-
-std::string pair_text(const OffendingPair& pair) {
-  const auto v = [&pair](std::size_t k) { return std::to_string(pair.vertices[k]); };
-  if (pair.edge_edge) return "edge " + v(0) + "-" + v(1) + " with edge " + v(2) + "-" + v(3);
-  return "vertex " + v(0) + " with face " + v(1) + "-" + v(2) + "-" + v(3);
-}
-
 /// Lists the pairs behind the failure, those of the start or those of the step.
 void draw_pairs(const PanelContext& context) {
   const auto& start = context.start_intersections;
@@ -32,14 +17,14 @@ void draw_pairs(const PanelContext& context) {
   const std::size_t count = start.empty() ? offending.size() : start.size();
   if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
 
+  const ElementNames names(context.scene);
+
   // The list scrolls beyond six rows, and ends after fifty.
   const float line = ImGui::GetTextLineHeightWithSpacing();
   ImGui::BeginChild("##list", {0, line * static_cast<float>(std::min<std::size_t>(count, 6))});
   for (std::size_t k = 0; k < std::min(count, kMaxListed); ++k) {
-    const std::string text = start.empty() ? pair_text(offending[k])
-                                           : face_text(context.world, start[k].a) + " crosses " +
-                                                 face_text(context.world, start[k].b);
-    ImGui::BulletText("%s", text.c_str());
+    const std::string text = start.empty() ? names.pair(offending[k]) : names.pair(start[k]);
+    ImGui::BulletText("%s", shown(text).c_str());
   }
 
   if (count > kMaxListed) ImGui::TextDisabled("and %zu more", count - kMaxListed);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/window/estimates.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -32,15 +33,15 @@ std::string value_of(const std::vector<Estimate>& list, std::string_view name) {
 }
 
 TEST(EstimateText, NumbersAreShort) {
-  EXPECT_EQ(short_number(0), "0");
-  EXPECT_EQ(short_number(4.2e-4), "4e-4");
-  EXPECT_EQ(short_number(1e-10), "1e-10");
-  EXPECT_EQ(short_number(0.0123), "0.012");
-  EXPECT_EQ(short_number(3.14159), "3.1");
-  EXPECT_EQ(short_number(9.96), "10");
-  EXPECT_EQ(short_number(123.4), "123");
-  EXPECT_EQ(short_number(2.1e7), "2e7");
-  EXPECT_EQ(short_number(-0.5), "-0.5");
+  EXPECT_EQ(brief_number(0), "0");
+  EXPECT_EQ(brief_number(4.2e-4), "4e-4");
+  EXPECT_EQ(brief_number(1e-10), "1e-10");
+  EXPECT_EQ(brief_number(0.0123), "0.012");
+  EXPECT_EQ(brief_number(3.14159), "3.1");
+  EXPECT_EQ(brief_number(9.96), "10");
+  EXPECT_EQ(brief_number(123.4), "123");
+  EXPECT_EQ(brief_number(2.1e7), "2e7");
+  EXPECT_EQ(brief_number(-0.5), "-0.5");
 }
 
 TEST(EstimateText, PowersHaveASignAndAUnit) {

@@ -204,7 +204,7 @@ TEST(MeshIo, MddTimesGiveTheFrameRateOnlyWhereTheyAreEven) {
 TEST(MeshIo, OutsideBodiesAreRead) {
   const std::string folder = outside_data() + "/bodies/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no reference data in " << outside_data();
-  const TriangleMesh rumba = read_body(folder + "rumba.obj");
+  const TriangleMesh rumba = read_body(folder + "rumba.obj").mesh;
   EXPECT_EQ(rumba.positions.size(), 12811u);
   EXPECT_EQ(rumba.faces.size(), 25472u);
   const auto frames = read_point_cache(folder + "rumba.pc2", 12811).frames;
@@ -214,7 +214,7 @@ TEST(MeshIo, OutsideBodiesAreRead) {
 TEST(MeshIo, SkinnedBodiesStandUprightInMetres) {
   const std::string path = outside_data() + "/bodies/cesium_man.gltf";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference data in " << outside_data();
-  const TriangleMesh man = read_body(path);
+  const TriangleMesh man = read_body(path).mesh;
   double low = 1e9, high = -1e9;
   for (Vec3d p : man.positions) low = std::min(low, p.y), high = std::max(high, p.y);
   EXPECT_NEAR(low, 0, 0.02);

@@ -222,8 +222,17 @@ TEST(BadInput, MessagesAreOneLineOfBoundedLength) {
     const std::string cut = InputError(before + accents + ", expected less").what();
     EXPECT_LT(cut.size(), 1000u);
     EXPECT_TRUE(cut.ends_with("é, expected less"));
-    EXPECT_NE(cut.find("é … é"), std::string::npos) << cut;
+    EXPECT_NE(cut.find("é…é"), std::string::npos) << cut;
+    EXPECT_EQ(cut.find('?'), std::string::npos) << "no character is cut in two";
   }
+
+  // Words of ordinary length, but too many of them.
+  std::string words;
+  for (int i = 0; i < 5000; ++i) words += "éé ";
+  const std::string cut = InputError(words + "end").what();
+  EXPECT_LT(cut.size(), 1000u);
+  EXPECT_TRUE(cut.ends_with("éé end"));
+  EXPECT_NE(cut.find(" … "), std::string::npos) << cut;
 }
 
 /// Scene whose one cloth is a grid, with more keys at the top level and in the cloth.
@@ -277,7 +286,7 @@ TEST(BadInput, Scenes) {
       {"x", scene(R"("duration": 1e999,)"), {"1e999"}},
       {"rough",
        scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "friction": 2.5}],)"),
-       {"obstacles[0].friction", "value 2.5", "from 0.0 to 2.0"}},
+       {"obstacles[0].friction", "value 2.5", "from 0 to 2"}},
       {"slippery", scene("", R"(, "friction": -0.1)"), {"cloths[0].friction", "value -0.1"}},
       {"no_number", scene("", R"(, "friction": null)"), {"cloths[0].friction", "null", "number"}},
       {"thick",

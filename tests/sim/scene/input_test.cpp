@@ -67,6 +67,55 @@ Scene grab_scene() {
   return scene;
 }
 
+/// A recording with one grab.
+std::string recording_with(const std::string& face, const std::string& barycentric,
+                           const std::string& handle = "0") {
+  return R"({"icloth_recording": 1, "scene": "scarf", "build": "cpu32", "overrides": [], "steps": [)"
+         R"({}, {"events": [{"kind": "grab", "handle": )" +
+         handle + R"(, "face": )" + face + R"(, "barycentric": )" + barycentric +
+         R"(, "target": [0, 0, 0]}]}], "final_hash": "0123456789abcdef"})";
+}
+
+/// Why a recording is refused, "" where it is accepted.
+std::string refusal_of(const std::string& text, const Scene* scene = nullptr) {
+  const std::string path = scratch("grab.json");
+  std::ofstream(path) << text;
+  try {
+    const Recording recording = load_recording(path);
+    if (scene) check_recording(recording, *scene, path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Recording, NameStepAndEventOfAnImpossibleGrab) {
+  EXPECT_EQ(refusal_of(recording_with("3", "[0.2, 0.3, 0.5]")), "");
+  for (const char* weights : {"[2, -0.5, -0.5]", "[0.2, 0.2, 0.2]", "[-1, 1, 1]", "[null, 0, 1]",
+                              "[1e300, 0, 0]", "[1, 0]"}) {
+    const std::string text = refusal_of(recording_with("3", weights));
+    EXPECT_TRUE(holds(text, "steps[1].events[0].barycentric")) << weights << ": " << text;
+  }
+  EXPECT_TRUE(holds(refusal_of(recording_with("-1", "[1, 0, 0]")), "steps[1].events[0].face"));
+  EXPECT_TRUE(
+      holds(refusal_of(recording_with("1", "[1, 0, 0]", "-7")), "steps[1].events[0].handle"));
+}
+
+TEST(Recording, OfAnotherSceneAreRefused) {
+  Scene scene;
+  scene.name = "other";
+  scene.cloths.resize(1);
+  scene.cloths[0].mesh.faces.resize(3);
+  EXPECT_EQ(refusal_of(recording_with("2", "[1, 0, 0]"), &scene), "");
+  const std::string text = refusal_of(recording_with("3", "[1, 0, 0]"), &scene);
+  EXPECT_TRUE(holds(text, "steps[1].events[0].face: value 3, expected 0 to 2")) << text;
+  EXPECT_TRUE(holds(text, "'other'")) << text;
+}
+
 }  // namespace
 
 TEST(Recording, ReadsBackExactly) {
