@@ -31,9 +31,26 @@ constexpr Names names_of(Integrator) { return kIntegrators; }
 constexpr Names names_of(BendingModel) { return kBendingModels; }
 constexpr Names names_of(MaterialEvaluation) { return kMaterialEvaluations; }
 
-/// The member `Member` of the group `Group` of all parameters.
-template <auto Group, auto Member>
+// Where each group of settings is among all parameters.
+constexpr auto group_of(StepParameters) { return &Parameters::step; }
+constexpr auto group_of(GravityParameters) { return &Parameters::gravity; }
+constexpr auto group_of(WindParameters) { return &Parameters::wind; }
+constexpr auto group_of(MaterialParameters) { return &Parameters::material; }
+constexpr auto group_of(ProximityParameters) { return &Parameters::proximity; }
+constexpr auto group_of(ImplicitParameters) { return &Parameters::implicit; }
+constexpr auto group_of(BroadPhaseParameters) { return &Parameters::broad_phase; }
+constexpr auto group_of(CcdParameters) { return &Parameters::ccd; }
+constexpr auto group_of(ImpactZoneParameters) { return &Parameters::impact_zones; }
+constexpr auto group_of(GrabParameters) { return &Parameters::grab; }
+
+/// The group that a member belongs to; never called, its result type is what counts.
+template <class Group, class Type>
+Group owner_of(Type Group::*);
+
+/// How the table reads and writes one member, such as &StepParameters::time_step.
+template <auto Member>
 constexpr ParameterField field() {
+  constexpr auto Group = group_of(decltype(owner_of(Member)){});
   using Kind = ParameterField::Kind;
   using Type = std::remove_cvref_t<decltype(std::declval<Parameters>().*Group.*Member)>;
 
@@ -54,28 +71,6 @@ constexpr ParameterField field() {
   return f;
 }
 
-// Short names of the members of each group, for the table below.
-template <auto Member>
-constexpr ParameterField step = field<&Parameters::step, Member>();
-template <auto Member>
-constexpr ParameterField gravity = field<&Parameters::gravity, Member>();
-template <auto Member>
-constexpr ParameterField wind = field<&Parameters::wind, Member>();
-template <auto Member>
-constexpr ParameterField material = field<&Parameters::material, Member>();
-template <auto Member>
-constexpr ParameterField proximity = field<&Parameters::proximity, Member>();
-template <auto Member>
-constexpr ParameterField implicit = field<&Parameters::implicit, Member>();
-template <auto Member>
-constexpr ParameterField broad_phase = field<&Parameters::broad_phase, Member>();
-template <auto Member>
-constexpr ParameterField ccd = field<&Parameters::ccd, Member>();
-template <auto Member>
-constexpr ParameterField impact_zones = field<&Parameters::impact_zones, Member>();
-template <auto Member>
-constexpr ParameterField grab = field<&Parameters::grab, Member>();
-
 using Step = StepParameters;
 using Gravity = GravityParameters;
 using Wind = WindParameters;
@@ -91,163 +86,160 @@ constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangia
 // Units: k is a repulsion stiffness per area, hence N/m³. "paper" is Tang et al. 2018, "ARCSim" the
 // defaults that Narain, Samii and O'Brien 2012 published with theirs, "measured" our own runs.
 constexpr ParameterInfo kTable[] = {
-    {"step.time_step", "time step dt", "s", step<&Step::time_step>, 1e-4, 0.1, true,
+    {"step.time_step", "time step dt", "s", field<&Step::time_step>(), 1e-4, 0.1, true,
      "smoother contacts, less numerical damping, more steps for a second of motion",
      "fewer steps for a second of motion, more damping, deeper penetrations to resolve",
      "paper, Fig. 8 (1/200 to 1/100 s)"},
-    {"step.max_substep_levels", "substep levels", "", step<&Step::max_substep_levels>, 0, 10, false,
-     "a step that cannot be made free of penetrations is refused sooner",
+    {"step.max_substep_levels", "substep levels", "", field<&Step::max_substep_levels>(), 0, 10,
+     false, "a step that cannot be made free of penetrations is refused sooner",
      "such a step is halved more often before it is refused", "own choice: dt/64"},
-    {"step.max_travel", "travel in a substep", "edges", step<&Step::max_travel>, 0.1, 100, true,
+    {"step.max_travel", "travel in a substep", "edges", field<&Step::max_travel>(), 0.1, 100, true,
      "fast motion is cut into more substeps: fewer, shallower impacts",
      "fewer substeps; impacts deeper than an edge are hard to resolve", "measured on the scarf"},
 
-    {"gravity.x", "gravity x", "m/s²", gravity<&Gravity::x>, -100, 100, false, "pull towards −x",
+    {"gravity.x", "gravity x", "m/s²", field<&Gravity::x>(), -100, 100, false, "pull towards −x",
      "pull towards +x", "Y is up"},
-    {"gravity.y", "gravity y", "m/s²", gravity<&Gravity::y>, -100, 100, false, "stronger pull down",
+    {"gravity.y", "gravity y", "m/s²", field<&Gravity::y>(), -100, 100, false, "stronger pull down",
      "weaker pull down, above 0: up", "standard gravity"},
-    {"gravity.z", "gravity z", "m/s²", gravity<&Gravity::z>, -100, 100, false, "pull towards −z",
+    {"gravity.z", "gravity z", "m/s²", field<&Gravity::z>(), -100, 100, false, "pull towards −z",
      "pull towards +z", "Y is up"},
 
-    {"wind.x", "wind x", "m/s", wind<&Wind::x>, -50, 50, false, "air moves towards −x",
+    {"wind.x", "wind x", "m/s", field<&Wind::x>(), -50, 50, false, "air moves towards −x",
      "air moves towards +x", "still air"},
-    {"wind.y", "wind y", "m/s", wind<&Wind::y>, -50, 50, false, "air moves down", "air moves up",
+    {"wind.y", "wind y", "m/s", field<&Wind::y>(), -50, 50, false, "air moves down", "air moves up",
      "still air"},
-    {"wind.z", "wind z", "m/s", wind<&Wind::z>, -50, 50, false, "air moves towards −z",
+    {"wind.z", "wind z", "m/s", field<&Wind::z>(), -50, 50, false, "air moves towards −z",
      "air moves towards +z", "still air"},
-    {"wind.air_density", "air density", "kg/m³", wind<&Wind::air_density>, 0, 10, false,
+    {"wind.air_density", "air density", "kg/m³", field<&Wind::air_density>(), 0, 10, false,
      "less pressure across the cloth; 0 together with air_drag 0: no air at all",
      "wind pushes and still air brakes more", "ARCSim; air is 1.2"},
-    {"wind.air_drag", "air drag along the cloth", "N·s/m³", wind<&Wind::air_drag>, 0, 10, false,
+    {"wind.air_drag", "air drag along the cloth", "N·s/m³", field<&Wind::air_drag>(), 0, 10, false,
      "air slips along the cloth; pressure still brakes it as long as air_density is above 0",
      "air drags the cloth along", "ARCSim"},
 
-    {"material.stretch_scale", "stretching ×", "", material<&Fabric::stretch_scale>, 1e-3, 1e3,
-     true, "softer in the plane, fewer iterations", "stiffer in the plane, more iterations",
+    {"material.stretch_scale", "stretching ×", "", field<&Fabric::stretch_scale>(), 1e-3, 1e3, true,
+     "softer in the plane, fewer iterations", "stiffer in the plane, more iterations",
      "as measured"},
-    {"material.bend_scale", "bending ×", "", material<&Fabric::bend_scale>, 0, 1e3, false,
+    {"material.bend_scale", "bending ×", "", field<&Fabric::bend_scale>(), 0, 1e3, false,
      "finer, softer folds", "wider, stiffer folds", "as measured"},
-    {"material.yarn_friction", "friction of yarns ×", "", material<&Fabric::yarn_friction>, 0, 100,
+    {"material.yarn_friction", "friction of yarns ×", "", field<&Fabric::yarn_friction>(), 0, 100,
      false, "springs back from folds; 0: elastic",
      "stands up by itself and keeps folds, hangs stiffer", "as its fabric says, mostly none"},
-    {"material.density_scale", "density ×", "", material<&Fabric::density_scale>, 1e-2, 1e2, true,
+    {"material.density_scale", "density ×", "", field<&Fabric::density_scale>(), 1e-2, 1e2, true,
      "lighter cloth: moved more by wind and hands", "heavier cloth: sags and stretches more",
      "as measured"},
-    {"material.damping", "added damping", "s", material<&Fabric::damping>, 0, 0.1, false,
+    {"material.damping", "added damping", "s", field<&Fabric::damping>(), 0, 0.1, false,
      "ripples live longer", "ripples and motion die out, rotations are braked too",
      "none beyond the fabric's own"},
-    {"material.strain_limit", "strain limit", "", material<&Fabric::strain_limit>, 0, 10, false,
+    {"material.strain_limit", "strain limit", "", field<&Fabric::strain_limit>(), 0, 10, false,
      "cloth hardens at less stretch, more iterations; 0: as its fabric says, mostly never",
      "cloth stretches further before it hardens", "own choice; 0.1: a tenth longer"},
-    {"material.pressure", "pressure inside", "Pa", material<&Fabric::pressure>, -1e5, 1e5, false,
+    {"material.pressure", "pressure inside", "Pa", field<&Fabric::pressure>(), -1e5, 1e5, false,
      "blows up closed cloth less; negative: sucks it in", "blows up closed cloth more",
      "none; open cloth is left alone"},
-    {"material.bending", "bending", "", material<&Fabric::bending>, 0, 1, false,
+    {"material.bending", "bending", "", field<&Fabric::bending>(), 0, 1, false,
      "hinge: each edge for itself; how stiff depends on the layout of the mesh",
      "plate: from the curvature of each face; as stiff on every mesh", "measured"},
-    {"material.evaluation", "stiffness", "", material<&Fabric::evaluation>, 0, 1, false,
+    {"material.evaluation", "stiffness", "", field<&Fabric::evaluation>(), 0, 1, false,
      "direct: the measured law at each strain",
      "table: sampled at 30 strains in three axes and interpolated, as ARCSim does",
      "for comparisons"},
 
-    {"proximity.enabled", "repulsion and friction", "", proximity<&Near::enabled>, 0, 1, false,
+    {"proximity.enabled", "repulsion and friction", "", field<&Near::enabled>(), 0, 1, false,
      "off: impact zones alone keep layers apart, no friction", "on", "paper, Section 2.5"},
-    {"proximity.thickness", "thickness h", "m", proximity<&Near::thickness>, 1e-5, 0.05, true,
+    {"proximity.thickness", "thickness h", "m", field<&Near::thickness>(), 1e-5, 0.05, true,
      "layers lie closer, more impacts are left to the impact zones",
      "layers stay further apart; above a third of an edge length neighbours repel", "ARCSim"},
-    {"proximity.stiffness", "repulsion stiffness k", "N/m³", proximity<&Near::stiffness>, 1e2, 1e10,
+    {"proximity.stiffness", "repulsion stiffness k", "N/m³", field<&Near::stiffness>(), 1e2, 1e10,
      true, "layers press into the thickness, more impacts",
      "contacts hold heavier loads and faster approaches, more iterations",
      "stops 3 m/s within 1 mm; ARCSim's sphere scene"},
-    {"proximity.friction_cloth", "friction cloth–cloth", "", proximity<&Near::friction_cloth>, 0, 2,
+    {"proximity.friction_cloth", "friction cloth–cloth", "", field<&Near::friction_cloth>(), 0, 2,
      false, "layers slide on each other", "layers and knots hold", "ARCSim"},
     {"proximity.friction_obstacle", "friction cloth–obstacle", "",
-     proximity<&Near::friction_obstacle>, 0, 2, false, "cloth slides off bodies",
+     field<&Near::friction_obstacle>(), 0, 2, false, "cloth slides off bodies",
      "cloth is carried along by bodies", "ARCSim"},
 
-    {"implicit.integrator", "integrator", "", implicit<&Solve::integrator>, 0, 1, false,
+    {"implicit.integrator", "integrator", "", field<&Solve::integrator>(), 0, 1, false,
      "backward_euler: first order, damps ripples more the larger the step",
      "bdf2: second order where nothing touches, motion lives longer", "measured"},
-    {"implicit.preconditioner", "preconditioner", "", implicit<&Solve::preconditioner>, 0, 1, false,
+    {"implicit.preconditioner", "preconditioner", "", field<&Solve::preconditioner>(), 0, 1, false,
      "block_jacobi: cheap iterations, several times as many",
      "multilevel: groups of vertices are corrected together, on several levels", "measured"},
-    {"implicit.cg_tolerance", "CG tolerance", "", implicit<&Solve::cg_tolerance>, 1e-10, 0.5, true,
+    {"implicit.cg_tolerance", "CG tolerance", "", field<&Solve::cg_tolerance>(), 1e-10, 0.5, true,
      "solves the linear system better, slower", "faster, loses momentum, may look damped",
      "measured; the paper's family uses 1e-2"},
-    {"implicit.cg_max_iterations", "CG iterations", "", implicit<&Solve::cg_max_iterations>, 1,
+    {"implicit.cg_max_iterations", "CG iterations", "", field<&Solve::cg_max_iterations>(), 1,
      20000, true, "bounds the time of a step, stiff cloth looks stretchy",
      "reaches the tolerance more often", "P-Cloth (Li et al. 2020)"},
-    {"implicit.contact_passes", "contact passes", "", implicit<&Solve::contact_passes>, 1, 20,
-     false, "contacts are guessed from the velocities once; more impacts are left",
+    {"implicit.contact_passes", "contact passes", "", field<&Solve::contact_passes>(), 1, 20, false,
+     "contacts are guessed from the velocities once; more impacts are left",
      "contacts that close, open, stick or slide during the solve are found and solved again",
      "measured"},
-    {"implicit.contact_tolerance", "contact tolerance", "", implicit<&Solve::contact_tolerance>, 0,
+    {"implicit.contact_tolerance", "contact tolerance", "", field<&Solve::contact_tolerance>(), 0,
      1, false, "contact forces of the right kind and size, more passes; 0: always all passes",
      "contacts may pull, and friction be wrong, by this share of the load", "measured"},
-    {"implicit.newton_iterations", "Newton iterations", "", implicit<&Solve::newton_iterations>, 1,
+    {"implicit.newton_iterations", "Newton iterations", "", field<&Solve::newton_iterations>(), 1,
      20, false, "1: one linearisation as in the paper; stiff or fast turning cloth gains strain",
      "elastic forces are those of the end of the step; slower", "measured"},
-    {"implicit.newton_tolerance", "Newton tolerance", "N/m", implicit<&Solve::newton_tolerance>,
+    {"implicit.newton_tolerance", "Newton tolerance", "N/m", field<&Solve::newton_tolerance>(),
      1e-6, 1e6, true, "iterates until the linearisation is wrong by less tension",
      "stops iterating sooner", "measured: bench accuracy"},
     {"implicit.max_linearization_error", "largest linearisation error", "N/m",
-     implicit<&Solve::max_linearization_error>, 1, 1e9, true,
+     field<&Solve::max_linearization_error>(), 1, 1e9, true,
      "halves the step sooner, calmer stiff fabrics",
      "stiff fabrics that are hit gain energy from what one solve does not see", "measured"},
 
-    {"broad_phase.method", "broad phase", "", broad_phase<&Broad::method>, 0, 1, false,
+    {"broad_phase.method", "broad phase", "", field<&Broad::method>(), 0, 1, false,
      "tree: bounding volumes, refitted and rebuilt now and then",
      "hash: a grid of sorted cells, as in the paper's family", "measured"},
     {"broad_phase.rebuild_interval", "tree rebuilt every", "steps",
-     broad_phase<&Broad::rebuild_interval>, 1, 1000, true,
-     "tighter boxes, more time spent building", "looser boxes, more candidate pairs", "measured",
-     "broad_phase.method=tree"},
-    {"broad_phase.count_tests", "count box tests", "", broad_phase<&Broad::count_tests>, 0, 1,
-     false, "off", "on: fills the column box_tests, searches twice", "own choice"},
+     field<&Broad::rebuild_interval>(), 1, 1000, true, "tighter boxes, more time spent building",
+     "looser boxes, more candidate pairs", "measured", "broad_phase.method=tree"},
+    {"broad_phase.count_tests", "count box tests", "", field<&Broad::count_tests>(), 0, 1, false,
+     "off", "on: fills the column box_tests, searches twice", "own choice"},
 
-    {"ccd.incremental", "incremental rounds", "", ccd<&CcdParameters::incremental>, 0, 1, false,
+    {"ccd.incremental", "incremental rounds", "", field<&CcdParameters::incremental>(), 0, 1, false,
      "off: every round makes the lists anew and tests all pairs; same impacts, slower",
      "on: later rounds look at pairs with a dirty vertex", "paper, Section 3"},
 
-    {"impact_zones.enabled", "impact zones", "", impact_zones<&Zones::enabled>, 0, 1, false,
+    {"impact_zones.enabled", "impact zones", "", field<&Zones::enabled>(), 0, 1, false,
      "off: a step with impacts is refused, nothing is resolved", "on", "paper, Section 4"},
-    {"impact_zones.solver", "zone solver", "", impact_zones<&Zones::solver>, 0, 2, false,
+    {"impact_zones.solver", "zone solver", "", field<&Zones::solver>(), 0, 2, false,
      "augmented_lagrangian: the paper's; dual: projected gradient on the impulses",
      "linear: inelastic projection (Harmon et al. 2008), layers stick", "measured"},
-    {"impact_zones.offset", "impact offset δ", "m", impact_zones<&Zones::offset>, 1e-6, 0.01, true,
+    {"impact_zones.offset", "impact offset δ", "m", field<&Zones::offset>(), 1e-6, 0.01, true,
      "resolved layers end closer to each other, more of them collide again",
      "resolved layers end further apart, visible jumps", "ARCSim; 0.1 × thickness"},
-    {"impact_zones.penalty", "penalty μ", "", impact_zones<&Zones::penalty>, 1, 1e6, true,
+    {"impact_zones.penalty", "penalty μ", "", field<&Zones::penalty>(), 1, 1e6, true,
      "constraints are approached slowly; rho must be lowered with it",
      "constraints dominate, ill-conditioned", "paper, Eq. 6", kOnlyPaper},
-    {"impact_zones.rho", "Chebyshev ρ", "", impact_zones<&Zones::rho>, 0, 0.99999, false,
+    {"impact_zones.rho", "Chebyshev ρ", "", field<&Zones::rho>(), 0, 0.99999, false,
      "slower convergence, more robust", "faster convergence, diverges when penalty is small",
      "paper, Eq. 8", kOnlyPaper},
-    {"impact_zones.iterations", "iterations of a zone", "", impact_zones<&Zones::iterations>, 1,
-     10000, true, "faster rounds, more rounds needed", "each round resolves more",
-     "paper, Section 4.1"},
-    {"impact_zones.step_threshold", "smallest step length", "",
-     impact_zones<&Zones::step_threshold>, 0, 1e-2, false, "iterates until nothing moves any more",
-     "stops early", "paper, Section 4.1", kOnlyPaper},
-    {"impact_zones.chebyshev", "Chebyshev acceleration", "", impact_zones<&Zones::chebyshev>, 0, 1,
+    {"impact_zones.iterations", "iterations of a zone", "", field<&Zones::iterations>(), 1, 10000,
+     true, "faster rounds, more rounds needed", "each round resolves more", "paper, Section 4.1"},
+    {"impact_zones.step_threshold", "smallest step length", "", field<&Zones::step_threshold>(), 0,
+     1e-2, false, "iterates until nothing moves any more", "stops early", "paper, Section 4.1",
+     kOnlyPaper},
+    {"impact_zones.chebyshev", "Chebyshev acceleration", "", field<&Zones::chebyshev>(), 0, 1,
      false, "off: plain descent, slower", "on", "paper, Eq. 8", kOnlyPaper},
-    {"impact_zones.max_rounds", "rounds", "", impact_zones<&Zones::max_rounds>, 1, 1000, true,
+    {"impact_zones.max_rounds", "rounds", "", field<&Zones::max_rounds>(), 1, 1000, true,
      "gives up sooner and halves the step", "tries longer before the step is halved",
      "own choice; the paper shows up to 200"},
-    {"impact_zones.max_correction", "largest correction", "edges",
-     impact_zones<&Zones::max_correction>, 0.1, 100, true,
-     "halves the step sooner, keeps the fabric from being torn by an impact",
+    {"impact_zones.max_correction", "largest correction", "edges", field<&Zones::max_correction>(),
+     0.1, 100, true, "halves the step sooner, keeps the fabric from being torn by an impact",
      "accepts corrections that stretch the fabric wildly", "measured on the scarf"},
 
-    {"grab.stiffness", "grab stiffness", "N/m", grab<&Grab::stiffness>, 1, 1e5, true,
+    {"grab.stiffness", "grab stiffness", "N/m", field<&Grab::stiffness>(), 1, 1e5, true,
      "cloth follows the hand softly", "cloth follows the hand closely, stretches more",
      "own choice"},
-    {"grab.radius", "grab radius", "m", grab<&Grab::radius>, 1e-3, 0.5, true,
+    {"grab.radius", "grab radius", "m", field<&Grab::radius>(), 1e-3, 0.5, true,
      "holds a small spot, pulls a tip", "holds a wide patch", "own choice: a fingertip"},
-    {"grab.max_speed", "fastest hand", "m/s", grab<&Grab::max_speed>, 0.1, 20, true,
+    {"grab.max_speed", "fastest hand", "m/s", field<&Grab::max_speed>(), 0.1, 20, true,
      "cloth lags behind a fast cursor, calmer", "cloth keeps up, larger impacts in a step",
      "own choice"},
-    {"grab.max_force", "strongest hand", "N", grab<&Grab::max_force>, 1e-2, 1e3, true,
+    {"grab.max_force", "strongest hand", "N", field<&Grab::max_force>(), 1e-2, 1e3, true,
      "a stuck cloth is let go of sooner", "pulls heavier cloth, stretches the grabbed patch",
      "own choice: ten times the weight of a scarf"},
 };
