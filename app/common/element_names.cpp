@@ -189,16 +189,17 @@ int report_start_intersections(const Scene& scene, bool single_precision,
         1e3 * scene.repair->largest_move);
 
   // The remaining pairs are listed by name, up to a limit.
-  const auto [pairs, touches] = find_start_conflicts(scene, single_precision);
+  const StartConflicts conflicts = find_start_conflicts(scene, single_precision);
+  const std::vector<IntersectingFaces>& pairs = conflicts.pairs;
+  const std::vector<Touch>& touches = conflicts.touches;
   const ElementNames names(scene, layouts);
-  const auto list = [&](const char* what, const auto& conflicts, const auto& name) {
-    if (conflicts.empty()) return;
+  const auto list = [&](const char* what, const auto& places, const auto& name) {
+    if (places.empty()) return;
     std::fprintf(stderr, "icloth: scene '%s' starts with %zu %s:\n", scene.name.c_str(),
-                 conflicts.size(), what);
-    for (std::size_t i = 0; i < std::min(conflicts.size(), shown); ++i)
-      std::fprintf(stderr, "  %s\n", name(conflicts[i]).c_str());
-    if (conflicts.size() > shown)
-      std::fprintf(stderr, "  … and %zu more\n", conflicts.size() - shown);
+                 places.size(), what);
+    for (std::size_t i = 0; i < std::min(places.size(), shown); ++i)
+      std::fprintf(stderr, "  %s\n", name(places[i]).c_str());
+    if (places.size() > shown) std::fprintf(stderr, "  … and %zu more\n", places.size() - shown);
   };
   list("pairs of faces that intersect", pairs,
        [&](const IntersectingFaces& pair) { return names.pair(pair); });

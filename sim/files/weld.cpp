@@ -179,7 +179,7 @@ std::size_t near_border_vertices(const TriangleMesh& mesh, double distance) {
   std::vector<Index> vertices;
   for (const auto& [a, b] : border) vertices.insert(vertices.end(), {a, b});
   std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   NearPoints before(distance);
   std::size_t found = 0;
   for (const Index v : vertices) {

@@ -147,9 +147,9 @@ std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool
   std::vector<IntersectingFaces>& pairs = conflicts.pairs;
   for (const Touch& touch : conflicts.touches) pairs.push_back({touch.a, touch.b});
   const auto key = [](const IntersectingFaces& p) { return std::pair(p.a, p.b); };
+  const auto same = [&](const auto& p, const auto& q) { return key(p) == key(q); };
   std::ranges::sort(pairs, {}, key);
-  const auto rest = std::ranges::unique(pairs, {}, key);
-  pairs.erase(rest.begin(), rest.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
   return pairs;
 }
 
