@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "sim/state/limits.h"
+
 namespace icloth {
 namespace {
 
@@ -72,22 +74,26 @@ std::vector<Index> Hands::watched() const {
   return vertices;
 }
 
-void Hands::advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners) {
+std::int64_t Hands::advance(double dt, const Parameters& parameters,
+                            std::span<const Vec3d> corners) {
+  std::int64_t limits = 0;
   const double reach = parameters.grab.max_speed * dt;
   for (std::size_t k = 0; k < held_->size(); ++k) {
     HeldPatch& h = (*held_)[k];
     const Vec3d way = h.target - h.followed;
     const double distance = norm(way);
     h.followed = distance > reach ? h.followed + (reach / distance) * way : h.target;
+    if (distance > reach) limits |= bit_of(Limit::hand_speed);
 
     // A pull beyond the largest force would only stretch the patch.
     const Vec3d here = hit(k, h.barycentric, corners), pull = h.followed - here;
     const double force = h.stiffness * norm(pull);
     h.saturation = std::min(force / parameters.grab.max_force, 1.0);
-    h.pulled_to = force > parameters.grab.max_force
-                      ? here + (parameters.grab.max_force / force) * pull
-                      : h.followed;
+    const bool too_strong = force > parameters.grab.max_force;
+    h.pulled_to = too_strong ? here + (parameters.grab.max_force / force) * pull : h.followed;
+    if (too_strong) limits |= bit_of(Limit::hand_force);
   }
+  return limits;
 }
 
 std::vector<HandSpring> Hands::springs() const {

@@ -30,8 +30,8 @@ class Hands {
   std::vector<Index> watched() const;
 
   /// Moves the followed targets on by at most grab.max_speed · dt and limits the pull. `corners`:
-  /// positions of the watched vertices [m].
-  void advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners);
+  /// positions of the watched vertices [m]. Returns the limits that were reached, a bit each.
+  std::int64_t advance(double dt, const Parameters& parameters, std::span<const Vec3d> corners);
 
   bool empty() const { return held_->empty(); }
 

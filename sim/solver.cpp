@@ -250,14 +250,14 @@ void Solver::rest_cloth() {
   energy_.reset();
 }
 
-int Solver::travel_level() const {
+int Solver::travel_level(StepReport& report) const {
   const double speed = static_cast<double>(
       reduce("step.speed", mesh_.vertices, Real(0), Speed{state_.v.view()}, Max{}));
   const double reach = parameters_.step.max_travel * world_.median_edge;
   int level = 0;
-  for (double travel = speed * parameters_.step.time_step;
-       travel > reach && level < parameters_.step.max_substep_levels; travel *= 0.5)
-    ++level;
+  double travel = speed * parameters_.step.time_step;
+  for (; travel > reach && level < parameters_.step.max_substep_levels; travel *= 0.5) ++level;
+  if (travel > reach) report.reach(Limit::substep_levels);
   return level;
 }
 
@@ -310,7 +310,7 @@ std::vector<Vec3d> Solver::watched_positions() const {
   return out;
 }
 
-void Solver::use_hands(std::span<const InputEvent> events) {
+void Solver::use_hands(std::span<const InputEvent> events, StepReport& report) {
   state_.has_springs = false;
   if (events.empty() && hands_.empty()) return;
 
@@ -321,7 +321,7 @@ void Solver::use_hands(std::span<const InputEvent> events) {
   });
   hands_.apply(events, parameters_, grabs ? cloth_positions() : std::vector<Vec3d>{});
   if (hands_.empty()) return;
-  hands_.advance(parameters_.step.time_step, parameters_, watched_positions());
+  report.limits |= hands_.advance(parameters_.step.time_step, parameters_, watched_positions());
 
   // The springs of the patches, one at most for each vertex, as the implicit step reads them.
   upload_as(springs_, hands_.springs(), [](const HandSpring& s) {

@@ -53,9 +53,9 @@ class Solver final : public Simulator {
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
   void use_device() const;
-  void use_hands(std::span<const InputEvent> events);
+  void use_hands(std::span<const InputEvent> events, StepReport& report);
   /// Halvings after which no vertex is expected to travel further than allowed in a substep.
-  int travel_level() const;
+  int travel_level(StepReport& report) const;
   void back_to_substep_start();
   void rest_cloth();
   void save_start();

@@ -52,12 +52,16 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   report.finite = all_finite(state_);
   if (!report.finite) return false;
   // Half the step leaves a quarter of the strain that the linear solve does not see.
-  if (!last_resort &&
-      implicit_.linearization_error() > parameters_.implicit.max_linearization_error)
-    return false;
+  if (implicit_.linearization_error() > parameters_.implicit.max_linearization_error) {
+    report.reach(Limit::linearization_error);
+    if (!last_resort) return false;
+  }
 
   // Impacts of the candidate are corrected, or in the last resort taken back.
-  return resolve_by_zones(step) || (last_resort && resolve_by_rollback(step));
+  if (resolve_by_zones(step)) return true;
+  if (!last_resort) return false;
+  report.reach(Limit::substep_levels);
+  return resolve_by_rollback(step);
 }
 
 bool Solver::resolve_by_zones(SubstepContext& step) {
@@ -67,8 +71,11 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
     find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
     if (report.impacts_left == 0) return true;
-    if (round == parameters_.impact_zones.max_rounds || !parameters_.impact_zones.enabled)
+    if (!parameters_.impact_zones.enabled) return false;
+    if (round == parameters_.impact_zones.max_rounds) {
+      report.reach(Limit::zone_rounds);
       return false;
+    }
 
     // Constraints are kept over the rounds, so that a correction does not undo those before it.
     ++report.rounds;
@@ -76,7 +83,10 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
     // A correction of more than about an edge would tear the fabric; half the step corrects less.
     const double correction = static_cast<double>(impact_zones_.largest_correction());
     report.finite = std::isfinite(correction);
-    if (!(correction <= parameters_.impact_zones.max_correction * world_.median_edge)) return false;
+    if (!(correction <= parameters_.impact_zones.max_correction * world_.median_edge)) {
+      report.reach(Limit::zone_correction);
+      return false;
+    }
   }
 }
 
@@ -150,14 +160,14 @@ StepReport Solver::step(std::span<const InputEvent> events) {
   timed(report.ms_total, [&] {
     // A refused step goes back to here. What hands were told to do is not undone by that.
     match_yarns(mesh_, parameters_, state_);
-    use_hands(events);
+    use_hands(events, report);
     save_start();
 
     // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.
     const int levels = parameters_.step.max_substep_levels;
     const std::int64_t whole = std::int64_t{1} << levels;
     std::int64_t done = 0;
-    int level = travel_level();
+    int level = travel_level(report);
     report.substeps = 0;
 
     // A substep that is not accepted is tried again at half its length.
@@ -169,7 +179,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
         accept_substep(report, dt);
         ++report.substeps;
         done += whole >> level;
-        if (level > travel_level() && done % (whole >> (level - 1)) == 0) --level;
+        if (level > travel_level(report) && done % (whole >> (level - 1)) == 0) --level;
       } else {
         report_offending(report);
         const bool room = level == levels && let_go_of_bodies(report, start, dt);

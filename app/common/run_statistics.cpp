@@ -102,6 +102,17 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
                       largest("pinched"), static_cast<long long>(steps_pinched));
   }
 
+  // The limits that were reached say which settings to look at.
+  for (int k = 0; k < kLimitCount; ++k) {
+    const auto limit = static_cast<Limit>(k);
+    const auto steps_at_limit =
+        std::ranges::count_if(reports_, [&](const StepReport& r) { return r.reached(limit); });
+    if (steps_at_limit == 0) continue;
+    const std::string name(parameter_of(limit));
+    text += formatted("%-22s %12lld   steps: %s\n", "limit reached",
+                      static_cast<long long>(steps_at_limit), name.c_str());
+  }
+
   // The machine and the outcome.
   if (!device_.empty())
     text += formatted("%-22s %12.1f GB/s %s\n", "device", copy_bandwidth_ / 1e9, device_.c_str());

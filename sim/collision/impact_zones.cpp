@@ -268,8 +268,8 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
   // The next round looks at the vertices that moved; idle constraints are dropped.
   store(step);
   drop_idle();
-  report(step.report, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
-                             IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
+  report(step, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
+                      IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
 }
 
 void ImpactZones::store(SubstepContext& step) {
@@ -300,7 +300,8 @@ void ImpactZones::drop_idle() {
   swap(kept_, unsorted_);
 }
 
-void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
+void ImpactZones::report(SubstepContext& step, Index dynamic_faces) const {
+  StepReport& report = step.report;
   const Index zones = results_.size();
   report.dynamic_faces = dynamic_faces;
   report.zones = std::max<std::int64_t>(report.zones, zones);
@@ -313,6 +314,8 @@ void ImpactZones::report(StepReport& report, Index dynamic_faces) const {
     value = std::max(value, static_cast<double>(other));
   };
   report.zone_iterations += worst.iterations;
+  if (worst.iterations >= step.parameters.impact_zones.iterations)
+    report.reach(Limit::zone_iterations);
   larger(report.zone_violation, worst.violation);
   larger(report.zone_complementarity, worst.complementarity);
   larger(report.zone_momentum_residual, worst.momentum_residual);

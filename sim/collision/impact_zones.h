@@ -42,7 +42,7 @@ class ImpactZones {
   void solve_zones(const SolveZone<Solver>& solve);
   void store(SubstepContext& step);
   void drop_idle();
-  void report(StepReport& report, Index dynamic_faces) const;
+  void report(SubstepContext& step, Index dynamic_faces) const;
 
   Array<KeptImpact> kept_;  ///< sorted by key, merge
   Array<KeptImpact> unsorted_, sorted_;

@@ -122,7 +122,8 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
                       .dt = system.h,
                       .solved = solved};
 
-  for (int pass = 0; pass < step.parameters.implicit.contact_passes; ++pass) {
+  const ImplicitParameters& p = step.parameters.implicit;
+  for (int pass = 0; pass < p.contact_passes; ++pass) {
     // Each contact acts as the last solve left it: open or closed, sticking or sliding.
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), terms_.view()});
@@ -135,8 +136,10 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
         reduce("implicit.contact_residual", contacts.size(), ContactResidual{0, 0, 0},
                ContactResidualOf{motion, law, contacts.view(), terms_.view()}, Sum{});
     work_ = residual.work;
-    if (!(residual.error > step.parameters.implicit.contact_tolerance * residual.load)) break;
+    if (!(residual.error > p.contact_tolerance * residual.load)) return;
   }
+  // A tolerance of 0 asks for all passes.
+  if (p.contact_tolerance > 0) step.report.reach(Limit::contact_passes);
 }
 
 void ContactPasses::solve_once(SubstepContext& step, const ContactSystem& system, View<Vec3r> dv,
@@ -165,6 +168,8 @@ void ContactPasses::solve_once(SubstepContext& step, const ContactSystem& system
   ++step.report.linear_solves;
   step.report.cg_iterations += solution.iterations;
   step.report.cg_bytes += solution.bytes;
+  if (solution.iterations >= p.cg_max_iterations && solution.residual > p.cg_tolerance)
+    step.report.reach(Limit::cg_iterations);
   step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
   lost_force_ = (1 / static_cast<double>(system.h)) * solution.lost;
 }

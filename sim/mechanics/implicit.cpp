@@ -146,7 +146,11 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
                     dv_.view(), iteration > 1);
     move(step);
     linearization_error_ = find_linearization_error(context);
-    if (iteration >= p.newton_iterations || !(linearization_error_ > p.newton_tolerance)) break;
+    if (!(linearization_error_ > p.newton_tolerance)) break;
+    if (iteration >= p.newton_iterations) {
+      step.report.reach(Limit::newton_iterations);
+      break;
+    }
     linearize_at_candidate(context);
   }
   outer_work_ = assembly_.work(context, dv_.view());

@@ -50,6 +50,7 @@ constexpr ReportColumn kColumns[] = {
     {"momentum_error", &R::momentum_error},
     {"energy_balance", &R::energy_balance},
     {"pinched", &R::pinched},
+    {"limits", &R::limits},
 };
 
 }  // namespace

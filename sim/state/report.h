@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kernels/parallel/platform.h"
+#include "sim/state/limits.h"
 
 namespace icloth {
 
@@ -53,6 +54,10 @@ struct StepReport {
   /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
   /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.
   double energy_balance = 0;
+  /// The limits that were reached in the step, in refused substeps too: a bit each, see limits.h.
+  std::int64_t limits = 0;
+  void reach(Limit limit) { limits |= bit_of(limit); }
+  bool reached(Limit limit) const { return (limits & bit_of(limit)) != 0; }
   /// Cloth vertices that are let go from a body at the end of the step (sim/collision/pinch.h).
   std::int64_t pinched = 0;
   std::uint64_t state_hash = 0;

@@ -87,6 +87,8 @@ void draw_counts(const StepReport& r) {
   row("substeps, retries", "%lld, %lld", static_cast<Count>(r.substeps),
       static_cast<Count>(r.retries));
   row("CG iterations", "%lld", static_cast<Count>(r.cg_iterations));
+  for (const std::string_view name : names_of_limits(r.limits))
+    row("limit reached", "%.*s", static_cast<int>(name.size()), name.data());
 }
 
 void draw_quantities(const StepReport& r) {

@@ -119,6 +119,20 @@ TEST(RunStatistics, TableNamesWhatARunLeaves) {
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
 }
 
+TEST(RunStatistics, TableNamesTheLimitsThatWereReached) {
+  RunStatistics statistics;
+  for (const std::int64_t step : {1, 2, 3}) {
+    StepReport report = report_of(step, 5);
+    if (step > 1) report.reach(Limit::cg_iterations);
+    statistics.add(report);
+  }
+  const std::string table = statistics.table(0, 0);
+  EXPECT_NE(table.find("limit reached                     2   steps: implicit.cg_max_iterations\n"),
+            std::string::npos)
+      << table;
+  EXPECT_EQ(table.find("contact_passes"), std::string::npos);
+}
+
 TEST(StatisticsFile, CsvHasARowAsSoonAsAStepIsDone) {
   const std::string path = scratch("steps.csv");
   StatisticsFile file(path);
