@@ -60,6 +60,24 @@ TEST(Image, BadFilesAreInputErrors) {
   std::filesystem::remove(path);
 }
 
+TEST(Image, SizesThatTakeTooMuchMemoryAreRefused) {
+  // The head of a PNG file has its width and height at byte 16; no pixel has to follow.
+  const std::string path = temporary("large.png");
+  write_png(path, picture());
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(16);
+  file.write("\0\0\x1f\x41\0\0\x1f\x40", 8);  // 8001 x 8000
+  file.close();
+  try {
+    read_png(path);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("8001 x 8000 pixels"), std::string::npos)
+        << error.what();
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(Compare, EqualPicturesAreAccepted) {
   const ImageDifference difference = compare(picture(), picture());
   EXPECT_TRUE(difference.accepted({}));

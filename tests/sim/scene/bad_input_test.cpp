@@ -51,6 +51,7 @@ TEST(BadInput, Obj) {
       {"empty.obj", "", {"0 triangles"}},
       {"points.obj", kCorners, {"0 triangles", "at least one"}},
       {"huge_number.obj", "v 0 0 1e300\n", {"line 1", "'1e300'"}},
+      {"far.obj", "v 0 0 1e9\nv 0 0 1.1e9\n", {"line 2", "'1.1e9'", "finite"}},
   };
   for (const BadFile& file : files) {
     std::vector<std::string> words = file.words;
@@ -77,6 +78,7 @@ TEST(BadInput, Ply) {
        "ply\nformat binary_little_endian 1.0\nelement vertex 500000000\nproperty double x\n"
        "property double y\nproperty double z\nend_header\n1234",
        {"element vertex", "500000000", "4 bytes"}},
+      {"most.ply", "ply\nformat ascii 1.0\nelement vertex 536870913\n", {"'536870913'"}},
       {"nan.ply", both + "0 0 0 1 nan 0 0 1 0 3 0 1 2\n", {"vertex 1", "nan", "finite"}},
       {"index.ply", both + "0 0 0 1 0 0 0 1 0 3 0 1 3\n", {"face 0", "'3'", "below 3"}},
       {"short.ply", both + "0 0 0 1 0 0 0 1 0 3 0 1   ", {"face 0", "end of file"}},
@@ -283,6 +285,9 @@ TEST(BadInput, Scenes) {
        scene(
            R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "motion": [{"time": 1}, {"time": 1}]}],)"),
        {"motion[1].time"}},
+      {"fine_ball",
+       scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1, "triangles": 1000001}}}],)"),
+       {"sphere.triangles", "value 1000001", "to 1000000"}},
       {"x", scene(R"("duration": 1e999,)"), {"1e999"}},
       {"rough",
        scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "friction": 2.5}],)"),
@@ -309,6 +314,37 @@ TEST(BadInput, Scenes) {
     SCOPED_TRACE(file.name);
     expect_error([&] { load_scene(path, {}); }, words);
   }
+}
+
+TEST(BadInput, ClothThatIsDividedTooOften) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", kCorners + "f 1 2 3\n");
+  const std::string path =
+      folder.write("often.json", R"({"cloths": [{"mesh": "a.obj", "subdivide": 7}]})");
+  expect_error([&] { load_scene(path, {}); }, {"cloths[0].subdivide", "value 7", "from 0 to 6"});
+}
+
+TEST(BadInput, JsonFilesOfMoreThanTheLargestSize) {
+  // The file has a length but takes no room on the disk, and must not be read into memory.
+  const TemporaryFolder folder;
+  const std::string path = folder.write("large.json", "{");
+  std::filesystem::resize_file(path, (std::uintmax_t{256} << 20) + 1);
+  expect_error([&] { load_scene(path, {}); }, {"large.json", "268435457 bytes", "268435456"});
+}
+
+TEST(BadInput, MaterialsWithTooManyBases) {
+  // Each file takes the next one as its base; the last one stands on a fabric that is built in.
+  const TemporaryFolder folder;
+  const auto name = [](int k) { return std::to_string(k) + ".json"; };
+  const auto chain = [&](int length) {
+    for (int k = 0; k < length; ++k) {
+      const std::string base = k + 1 < length ? name(k + 1) : "gray-interlock";
+      folder.write(name(k), R"({"base": ")" + base + R"("})");
+    }
+    return folder.path(name(0));
+  };
+  EXPECT_NO_THROW(load_material(chain(8), ""));
+  expect_error([&] { load_material(chain(9), ""); }, {"base", "come to an end"});
 }
 
 TEST(BadInput, Overrides) {
