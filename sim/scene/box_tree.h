@@ -70,9 +70,13 @@ class BoxTree {
   };
 
   void build(Index begin, Index end) {
+    // A node is numbered before its subtrees, which puts the nodes in depth-first order.
     const std::size_t n = nodes_.size();
     nodes_.push_back({Box::empty(), begin, end - begin <= kLeafSize ? end - begin : 0, 0});
     for (Index i = begin; i < end; ++i) nodes_[n].box.add(boxes_[at(order_[at(i)])]);
+
+    // Halving at the median of the centres, across the longest side, keeps boxes compact and the
+    // tree shallow. Box centres are compared at twice their value.
     if (end - begin > kLeafSize) {
       const Vec3d size = nodes_[n].box.high - nodes_[n].box.low;
       const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
@@ -87,6 +91,9 @@ class BoxTree {
       build(begin, middle);
       build(middle, end);
     }
+
+    // All nodes numbered since then are below this one, so a query that misses its box continues
+    // here.
     nodes_[n].skip = static_cast<Index>(nodes_.size());
   }
 

@@ -13,7 +13,7 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Vertices of the file and how many of them are simulated as others.
+/// A text such as "3 of 120 vertices".
 std::string count_of(std::size_t some, std::size_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " vertices";
 }
@@ -34,6 +34,8 @@ void snap(Cloth& cloth, const ClothMeshOptions& options) {
       options.file + ": weld: value " + rounded_text(options.weld.distance, 6);
   if (!snap_vertices(cloth.mesh, cloth.rest, options.weld.distance, options.scale))
     throw InputError(where + " m reaches hundreds of vertices at once, expected less than an edge");
+
+  // A triangle with two corners at one place would have no area at rest.
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f) {
     const Triangle& t = cloth.mesh.faces[f];
     for (std::size_t c = 0; c < 3; ++c)
@@ -54,7 +56,7 @@ std::size_t count_welded(const FileLayout& layout, std::size_t count) {
   return static_cast<std::size_t>(used - kept);
 }
 
-/// What the user should know about the vertices of a cloth: `count` of them come from the file.
+/// Notes how many vertices are unused, welded or nearly at one place; `count` come from the file.
 void note_vertices(const TriangleMesh& mesh, const FileLayout& layout,
                    const ClothMeshOptions& options, std::size_t count, const WeldReport& report,
                    std::vector<std::string>& notes) {

@@ -9,7 +9,7 @@
 
 namespace icloth {
 
-/// What is done with vertices at one place (key "weld" of a cloth).
+/// How the vertices at one place are treated (key "weld" of a cloth).
 struct WeldChoice {
   bool on = true;       ///< exact doubles become one vertex
   bool asked = false;   ///< the scene file says so
@@ -24,14 +24,14 @@ struct ClothMeshOptions {
   int subdivisions = 0;  ///< each cuts every triangle into four
 };
 
-/// Checks the mesh and the rest shape of a cloth as read, subdivides and welds them, leaves out
-/// vertices without a face. Returns how the file's vertices stand for those that are left. What
-/// users should know is appended to `notes`, a line each. Throws InputError naming object and
+/// Checks the mesh and the rest shape of a cloth as read, subdivides and welds them, and leaves out
+/// vertices without a face. Returns how the file's vertices stand for those that are left. Appends
+/// a line to `notes` for each change that users should know of. Throws InputError naming object and
 /// element.
 FileLayout prepare_cloth_mesh(Cloth& cloth, const ClothMeshOptions& options,
                               std::vector<std::string>& notes);
 
-/// A line where an object of that size is probably not in metres; empty where it may well be.
+/// Returns a line when an object of that size is probably not in metres, otherwise nothing.
 /// `scale` is what its transform multiplies the file with, so that the remedy can be named; bodies
 /// may be larger than cloths, and flat ones of any size.
 std::string unit_note(const std::string& object, const std::vector<Vec3d>& positions, Vec3d scale,

@@ -16,15 +16,20 @@ class Integer {
   Integer() = default;
   /// value · 2^-exponent, which must be whole.
   Integer(double value, int exponent) {
+    // A double is a whole number of 53 bits times a power of two.
     int power = 0;
     const double fraction = std::frexp(std::fabs(value), &power);
     auto bits = static_cast<std::uint64_t>(std::ldexp(fraction, 53));
     if (bits == 0) return;
     negative_ = value < 0;
+
+    // Without its trailing zeros that number is odd, so a whole result needs a shift to the left,
+    // never one to the right.
     const int zeros = std::countr_zero(bits);
     bits >>= zeros;
     const int shift = power - 53 + zeros - exponent;
     limbs_.assign(static_cast<std::size_t>(shift / 32), 0);
+
     // 53 bits shifted by less than 32 fit three limbs.
     const std::uint64_t low = (bits & 0xffffffffu) << (shift % 32);
     const std::uint64_t high = ((bits >> 32) << (shift % 32)) + (low >> 32);
@@ -41,6 +46,8 @@ class Integer {
   }
   friend Integer operator+(const Integer& a, const Integer& b) {
     if (a.negative_ != b.negative_ && a.smaller_than(b)) return b + a;
+
+    // The sum has the sign of `a`, whose magnitude is at least that of `b` where the signs differ.
     Integer sum = a;
     std::int64_t carry = 0;
     const std::int64_t factor = a.negative_ == b.negative_ ? 1 : -1;
@@ -58,6 +65,8 @@ class Integer {
     Integer product;
     product.negative_ = a.negative_ != b.negative_;
     product.limbs_.resize(a.limbs_.size() + b.limbs_.size(), 0);
+
+    // Long multiplication: the product of two limbs, a carry and one more limb still fit 64 bits.
     for (std::size_t i = 0; i < a.limbs_.size(); ++i) {
       std::uint64_t carry = 0;
       for (std::size_t j = 0; j < b.limbs_.size() || carry != 0; ++j) {
@@ -92,6 +101,8 @@ int common_exponent(std::span<const double> values) {
   bool first = true;
   for (const double value : values) {
     if (value == 0) continue;
+
+    // The lowest bit that is set gives the power of two that divides the value.
     int power = 0;
     const double fraction = std::frexp(std::fabs(value), &power);
     const int exponent =
@@ -109,11 +120,15 @@ int side_in_plane(Vec3d a, Vec3d b, Vec3d c, int axis) {
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   const double values[6] = {component(a, x), component(a, y), component(b, x),
                             component(b, y), component(c, x), component(c, y)};
+
+  // The sign of the difference is certain when it exceeds the rounding errors of both products.
   const double left = (values[2] - values[0]) * (values[5] - values[1]);
   const double right = (values[3] - values[1]) * (values[4] - values[0]);
   const double bound = 4.0 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + 1e-280;
   if (left - right > bound) return 1;
   if (left - right < -bound) return -1;
+
+  // Otherwise integers decide: one power of two makes all coordinates whole.
   const int exponent = common_exponent(values);
   Integer n[6];
   for (int k = 0; k < 6; ++k) n[k] = Integer(values[k], exponent);
@@ -203,11 +218,16 @@ int certain_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
 int exact_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   const int certain = certain_side(a, b, c, d);
   if (certain != 0) return certain;
-  for (int axis = 0; axis < 3; ++axis) {  // flat cloth at rest
+
+  // Cloth that lies flat has all its points in one plane across an axis, and needs no determinant.
+  for (int axis = 0; axis < 3; ++axis) {
     const double same = component(d, axis);
     if (component(a, axis) == same && component(b, axis) == same && component(c, axis) == same)
       return 0;
   }
+
+  // Integers decide the rest by the determinant of a − d, b − d and c − d, after one power of two
+  // has made all coordinates whole.
   const double values[12] = {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z};
   const int exponent = common_exponent(values);
   Integer m[3][3];
@@ -224,7 +244,7 @@ int exact_side(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
 bool triangles_meet(const FaceCorners& s, const FaceCorners& t) {
   const int s_axis = axis_of(s), t_axis = axis_of(t);
   if (s_axis < 0 || t_axis < 0) return false;
-  // What they have in common ends where an edge of one meets the other.
+  // Triangles in different planes meet along a segment, which ends at an edge of one of them.
   return edges_meet(s, t, t_axis) || edges_meet(t, s, s_axis);
 }
 

@@ -72,10 +72,14 @@ GridMesh make_grid(const GridShape& shape) {
   GridMesh grid;
   std::vector<Vec2d> uv;
   place_vertices(shape, size, uv, grid.row);
+
+  // Even rows lie below a shifted one, odd rows above one, and their triangles are mirrored.
   for (Index j = 0; j < size.rows; ++j) {
     const auto row = static_cast<std::size_t>(j);
     connect_rows(grid.row[row], grid.row[row + 1], size.columns, j % 2 == 0, grid.mesh.faces);
   }
+
+  // At rest the sheet is a flat rectangle; at the start it may be bent and lie horizontally.
   for (Vec2d point : uv) {
     const double y = point.y - shape.height / 2;
     const Vec2d plan = bend(shape, point.x - shape.width / 2);
@@ -83,6 +87,8 @@ GridMesh make_grid(const GridShape& shape) {
     grid.mesh.positions.push_back(shape.horizontal ? Vec3d{plan.x, -plan.y, -y}
                                                    : Vec3d{plan.x, y, plan.y});
   }
+
+  // The rectangle is the material space, so weft is u and warp is v on every face.
   for (const Triangle& face : grid.mesh.faces) {
     std::array<Vec2d, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = uv[static_cast<std::size_t>(face[c])];
@@ -102,6 +108,8 @@ std::vector<Index> grid_vertices(const GridMesh& grid, std::string_view name) {
   const auto first = [&](std::size_t row) { return grid.row[row]; };
   const auto last = [&](std::size_t row) { return grid.row[row + 1] - 1; };
   const auto middle = [&](std::size_t row) { return first(row) + (last(row) - first(row)) / 2; };
+
+  // Single vertices, most of which end or halve a row.
   if (name == "bottom_left") return {first(0)};
   if (name == "bottom_right") return {last(0)};
   if (name == "top_left") return {first(rows - 1)};
@@ -111,6 +119,8 @@ std::vector<Index> grid_vertices(const GridMesh& grid, std::string_view name) {
   if (name == "bottom_middle") return {middle(0)};
   if (name == "top_middle") return {middle(rows - 1)};
   if (name == "center") return {middle(rows / 2)};
+
+  // Whole borders: the first or last row, or the first or last vertex of each row.
   std::vector<Index> border;
   if (name == "bottom" || name == "top") {
     const std::size_t row = name == "top" ? rows - 1 : 0;

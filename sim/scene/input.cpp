@@ -60,6 +60,8 @@ InputEvent event_from(const JsonValue& value) {
   if (found == std::end(kKinds)) kind.refuse("grab, move or release");
   event.kind = static_cast<InputEvent::Kind>(found - std::begin(kKinds));
   event.handle = static_cast<int>(object.required("handle").integer(0, kLargestIndex));
+
+  // Only a grab says where it holds the cloth and how firmly; a release has no target.
   if (event.kind == InputEvent::Kind::grab) {
     event.face = static_cast<Index>(object.required("face").integer(0, kLargestIndex));
     event.barycentric = barycentric_from(object.required("barycentric"));
@@ -77,6 +79,8 @@ Recording::Step step_from(const JsonValue& value) {
   if (object.has("events"))
     for (const JsonValue& event : object["events"].items())
       step.events.push_back(event_from(event));
+
+  // Ranges are checked here already, where a message can name the file and the element.
   if (object.has("parameters")) {
     const JsonValue changes = JsonObject(object["parameters"]).value();
     for (const auto& [name, number] : changes.json().items()) {
@@ -107,10 +111,13 @@ Recording load_recording(const std::string& path) {
   JsonObject root(JsonValue(json, shown_path(path)));
   root.required("icloth_recording").integer(1, 1);
   Recording recording;
+
+  // The scene, build and overrides say what to load before the steps can be run again.
   recording.scene = root.required("scene").text();
   recording.build = root.required("build").text();
   if (recording.build != "cpu32" && recording.build != "cpu64" && recording.build != "cuda32")
     root["build"].refuse("cpu32, cpu64 or cuda32");
+
   for (const JsonValue& item : root.required("overrides").items())
     recording.overrides.push_back(item.text());
   for (const JsonValue& step : root.required("steps").items())
@@ -123,6 +130,8 @@ Recording load_recording(const std::string& path) {
 void check_recording(const Recording& recording, const Scene& scene, const std::string& path) {
   std::size_t faces = 0;
   for (const Cloth& cloth : scene.cloths) faces += cloth.mesh.faces.size();
+
+  // Only grabs refer to faces; moves and releases name a handle.
   for (std::size_t s = 0; s < recording.steps.size(); ++s) {
     const std::vector<InputEvent>& events = recording.steps[s].events;
     for (std::size_t e = 0; e < events.size(); ++e) {
@@ -138,6 +147,7 @@ void check_recording(const Recording& recording, const Scene& scene, const std::
 }
 
 void save_recording(const Recording& recording, const std::string& path) {
+  // The object is written by hand around its steps, to have one line for each of them.
   Json head;
   head["icloth_recording"] = 1;
   head["scene"] = recording.scene;
@@ -146,6 +156,8 @@ void save_recording(const Recording& recording, const std::string& path) {
   std::string text = head.dump();
   text.back() = ',';  // the object goes on
   text += " \"steps\": [\n";
+
+  // Empty members are left out, because most steps of a recording have no events.
   for (std::size_t i = 0; i < recording.steps.size(); ++i) {
     Json step = Json::object();
     for (const InputEvent& event : recording.steps[i].events)
@@ -155,6 +167,8 @@ void save_recording(const Recording& recording, const std::string& path) {
     if (recording.steps[i].passed_over) step["passed_over"] = true;
     text += step.dump() + (i + 1 < recording.steps.size() ? ",\n" : "\n");
   }
+
+  // A 64-bit hash is a text, as a JSON number need not hold it exactly.
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, recording.final_hash);
   text += "], \"final_hash\": \"" + std::string(hash) + "\"}\n";
@@ -165,10 +179,13 @@ namespace {
 
 /// Lowest-numbered face of a cloth that contains the vertex; fills face and barycentric weights.
 void hit_vertex(const Scene& scene, const ScriptedGrab& grab, InputEvent& event) {
+  // Events count the faces of all cloths in scene order.
   Index first_face = 0;
   for (Index c = 0; c < grab.cloth; ++c)
     first_face += static_cast<Index>(scene.cloths[static_cast<std::size_t>(c)].mesh.faces.size());
   const auto& faces = scene.cloths[static_cast<std::size_t>(grab.cloth)].mesh.faces;
+
+  // All of the weight is on the corner that is the vertex.
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto corner = std::ranges::find(faces[f], grab.vertex);
     if (corner == faces[f].end()) continue;

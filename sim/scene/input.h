@@ -1,4 +1,4 @@
-// What a hand does to the cloth: the same events come from the mouse, a scene and a recording.
+// Events by which hands act on the cloth. The mouse, a scene and a recording send the same ones.
 #pragma once
 
 #include <algorithm>

@@ -106,6 +106,7 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
 }
 
 StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {
+  // The objects become one soup of faces; `held` marks the vertices that cannot move.
   std::vector<Vec3d> positions;
   std::vector<Triangle> faces;
   std::vector<int> group;
@@ -130,6 +131,8 @@ StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {
     obstacle.pose(0.0, pose);
     append(obstacle.mesh, pose, -1);
   }
+
+  // Rounding to single precision can bring layers together that are apart in the scene.
   if (single_precision)
     for (Vec3d& p : positions) p = convert<double>(convert<float>(p));
 

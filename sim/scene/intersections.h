@@ -21,12 +21,13 @@ std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positio
                                                   std::span<const Triangle> faces,
                                                   std::span<const int> group);
 
-/// What keeps a scene from being simulated from its start state, rounded to single precision when
-/// `single_precision`. Numbers count cloths in scene order, then obstacles.
+/// Faces that touch or cross in the start state of a scene, which cannot be simulated then. Numbers
+/// count cloths in scene order, then obstacles.
 struct StartConflicts {
   std::vector<IntersectingFaces> pairs;  ///< faces without a common vertex that touch or cross
   std::vector<Touch> touches;            ///< of neighbouring faces, with a vertex that can move
 };
+/// `single_precision`: positions are rounded first, as the builds in single precision see them.
 StartConflicts find_start_conflicts(const Scene& scene, bool single_precision);
 
 /// All pairs of faces of the conflicts, neighbours included, sorted.

@@ -25,9 +25,9 @@ struct Material {
   std::array<std::array<double, 5>, 3> bending{};
   double bending_spacing = 10;  ///< [1/m], > 0; 10 as in ARCSim (docs/deviations.md)
   double bending_poisson = 0;   ///< of the plate model: D12 = ν √(D11 D22), in (−0.95, 0.95)
-  /// What the yarns hold by friction (kernels/yarn_friction.h): a moment per width [N] and a shear
-  /// force per width [N/m], half the width 2HB and 2HG (or 2HG5) of the loops in the Kawabata
-  /// tests; ≥ 0.
+  /// Internal friction of the yarns (kernels/yarn_friction.h): the largest moment per width [N] and
+  /// the largest shear force per width [N/m] that it holds. They are half the widths 2HB and 2HG
+  /// (or 2HG5) of the loops in the Kawabata tests; ≥ 0.
   double bending_friction = 0, shear_friction = 0;
   double strain_limit = 0;  ///< principal stretch − 1 where it begins to harden; 0: never
 };

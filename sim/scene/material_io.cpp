@@ -54,6 +54,8 @@ void read_bending(const JsonValue& value, double unit, Material& material) {
 void read_orthotropic(const JsonValue& value, Material& material) {
   JsonObject object(value);
   OrthotropicFabric f;
+
+  // With a larger Poisson's ratio the tensile energy would not be positive for every strain.
   const std::vector<double> young = object.required("young").numbers(2, kPositive);
   f.young_u = young[0], f.young_v = young[1];
   f.poisson = object.number("poisson", 0, {-10, 10});
@@ -61,6 +63,9 @@ void read_orthotropic(const JsonValue& value, Material& material) {
   if (!(std::fabs(f.poisson) < most))
     object["poisson"].refuse("|poisson| below 0.95 sqrt(E_u / E_v) = " + rounded_text(most, 6));
   f.shear = object.required("shear").number(kPositive);
+
+  // The bending moduli follow from a thickness, as for a homogeneous sheet, unless they are given
+  // themselves. One of the two must be there.
   if (object.has("thickness")) bend_as_sheet(f, object["thickness"].number({1e-6, 0.1}));
   if (object.has("bending")) {
     const JsonValue bending = object["bending"];

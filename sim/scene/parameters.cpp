@@ -31,7 +31,7 @@ constexpr Names names_of(Integrator) { return kIntegrators; }
 constexpr Names names_of(BendingModel) { return kBendingModels; }
 constexpr Names names_of(MaterialEvaluation) { return kMaterialEvaluations; }
 
-// Where each group of settings is among all parameters.
+// The member of Parameters that holds a group of settings.
 constexpr auto group_of(StepParameters) { return &Parameters::step; }
 constexpr auto group_of(GravityParameters) { return &Parameters::gravity; }
 constexpr auto group_of(WindParameters) { return &Parameters::wind; }
@@ -55,6 +55,8 @@ constexpr ParameterField field() {
   using Type = std::remove_cvref_t<decltype(std::declval<Parameters>().*Group.*Member)>;
 
   ParameterField f{};
+
+  // All values travel as doubles; a choice is the number of its name.
   f.get = [](const Parameters& p) { return static_cast<double>(p.*Group.*Member); };
   if constexpr (std::is_enum_v<Type>) {
     f.kind = Kind::choice;
@@ -280,14 +282,20 @@ std::string expected_range(const ParameterInfo& info) {
 /// Number behind the text of --set; false when it is not one.
 bool parse_value(std::string_view text, const ParameterInfo& info, double& value) {
   const bool words = info.field.kind == ParameterInfo::Kind::boolean;
+
+  // A choice is given by its name, and its value is the number of that name.
   const auto choices = info.field.choices;
   if (!choices.empty()) {
     const auto found = std::ranges::find(choices, text);
     value = static_cast<double>(found - choices.begin());
     return found != choices.end();
   }
+
+  // Switches also take words, besides 0 and 1.
   if (words && (text == "true" || text == "on")) return value = 1, true;
   if (words && (text == "false" || text == "off")) return value = 0, true;
+
+  // Everything else has to be a number up to its last character.
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   return error == std::errc{} && rest == end;
@@ -348,6 +356,9 @@ void set_parameter(Parameters& parameters, std::string_view key, std::string_vie
 
 std::string dump_parameters(const Parameters& parameters) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
+
+  // Values are written with their own types, so that the dump reads as a scene file would have
+  // them.
   for (const ParameterInfo& info : kTable) {
     auto& value = json[std::string(info.name)];
     if (const auto choices = info.field.choices; !choices.empty())

@@ -23,9 +23,9 @@ struct Preset {
 /// From the fastest to the most accurate; all set the same parameters.
 std::span<const Preset> presets();
 
-/// What `icloth bench accuracy` measured for a preset, one line a scene, and where: read from
-/// assets/results/presets.json, which docs/make_tables.py makes from the recorded results. Empty
-/// where that file is missing or cannot be read.
+/// The results of `icloth bench accuracy` for a preset, one line a scene, and the machine they were
+/// measured on. They are read from assets/results/presets.json, which docs/make_tables.py makes
+/// from the recorded results. Empty where that file is missing or cannot be read.
 std::string measured_results(const Preset& preset);
 
 /// Throws InputError that names the presets.

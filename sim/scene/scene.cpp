@@ -33,6 +33,7 @@ Interval find_frame(std::size_t count, double frame) {
 }  // namespace
 
 void Obstacle::pose(double time, std::vector<Vec3d>& out) const {
+  // An animation gives the positions between two of its frames, on straight lines.
   if (frames.empty()) {
     out = mesh.positions;
   } else {
@@ -42,6 +43,9 @@ void Obstacle::pose(double time, std::vector<Vec3d>& out) const {
     for (std::size_t v = 0; v < a.size(); ++v)
       out[v] = (1 - at.fraction) * convert<double>(a[v]) + at.fraction * convert<double>(b[v]);
   }
+
+  // Keyframes then move the whole body rigidly. Rotation vectors are interpolated component by
+  // component, so turns beyond 360 degrees are kept.
   if (motion.empty()) return;
   const Interval at = find_interval(motion, time);
   const Keyframe &a = motion[at.first], &b = motion[at.second];

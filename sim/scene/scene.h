@@ -65,7 +65,7 @@ struct CameraPose {
   double fov = 35;  ///< vertical [degrees]
 };
 
-/// What the repair of a start state did (sim/scene/repair.h).
+/// The outcome of repairing a start state (sim/scene/repair.h).
 struct StartRepair {
   std::size_t pairs_before = 0, pairs_left = 0;  ///< intersecting pairs of faces
   std::size_t moved = 0;                         ///< vertices that are somewhere else now

@@ -54,6 +54,8 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   if (object.has("triangles"))
     object["triangles"].refuse(
         "no such key: only grids choose their triangles (see \"subdivide\")");
+
+  // The rest shape is a second mesh of the same topology; its material coordinates win.
   if (object.has("rest")) {
     MeshFile rest = read_mesh(find_asset(object["rest"].text(), folder.path));
     if (!same_faces(file, rest))
@@ -62,6 +64,7 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
     cloth.rest = std::move(rest.mesh.positions);
     if (!rest.mesh.uv.empty()) file.mesh.uv = std::move(rest.mesh.uv);
   }
+
   cloth.mesh = std::move(file.mesh);
   if (cloth.rest.empty()) cloth.rest = cloth.mesh.positions;
   const std::string file_name = shown_path(name.text());
@@ -75,6 +78,8 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   if (object.has("transform")) options.scale = parse_transform(object["transform"]).scale;
   if (object.has("subdivide"))
     options.subdivisions = static_cast<int>(object["subdivide"].integer(0, kMaxSubdivisions));
+
+  // The limit is checked before the triangles exist, each subdivision making four of one.
   const std::size_t most = static_cast<std::size_t>(folder.limits.triangles);
   if (options.subdivisions > 0 && cloth.mesh.faces.size() > most >> (2 * options.subdivisions))
     object["subdivide"].refuse("at most " + std::to_string(most) + " triangles");
@@ -86,12 +91,15 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
 void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
   JsonObject mesh(object["mesh"]);
   const Index most = folder.limits.triangles;
+
+  // The count is scaled for `--set triangles`, which changes all grids of a scene alike.
   double triangles = kDefaultTriangles;
   if (object.has("triangles"))
     triangles = static_cast<double>(object["triangles"].integer(2, most));
   const double scaled = std::clamp<double>(std::round(triangles * folder.triangle_scale), 2, most);
   const GridShape shape = parse_grid(mesh.required("grid"), static_cast<Index>(scaled));
   mesh.finish();
+
   for (const char* key : {"rest", "subdivide", "weld"})
     if (object.has(key))
       object[key].refuse("no such key: only for mesh files, a grid is flat at rest");
@@ -107,6 +115,8 @@ Vec3d place_cloth(JsonObject& object, LoadedCloth& loaded) {
   if (object.has("transform")) {
     const Placement place = parse_transform(object["transform"]);
     const Vec3d s = scale = place.scale;
+
+    // Positions are placed, whereas the rest shape and the material space only change their size.
     if (!cloth.mesh.uv.empty() && (s.x != s.y || s.y != s.z))
       object["transform"].refuse("one scale for all axes on a cloth with material coordinates");
     for (Vec3d& p : cloth.mesh.positions) p = place(p);
@@ -115,6 +125,7 @@ Vec3d place_cloth(JsonObject& object, LoadedCloth& loaded) {
     for (auto& corners : cloth.mesh.uv)
       for (Vec2d& corner : corners) corner = s.x * corner;
   }
+
   if (!loaded.grid && !is_material_space(cloth.mesh.uv, cloth.rest, cloth.mesh.faces))
     cloth.mesh.uv.clear();
   return scale;
@@ -136,6 +147,8 @@ void pin_box(const JsonValue& value, const Cloth& cloth, std::vector<bool>& pinn
 
 void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
   std::vector<bool> pinned(loaded.cloth.mesh.positions.size());  // each once, however often named
+
+  // An item is a box of vertices, the name of a place on a grid, or one vertex.
   for (const JsonValue& item : value.items()) {
     if (item.json().is_object()) {
       JsonObject object(item);
@@ -149,6 +162,7 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
     for (Index v : named)
       if (v != kNone) pinned[static_cast<std::size_t>(v)] = true;  // without a face it stays anyway
   }
+
   for (std::size_t v = 0; v < pinned.size(); ++v)
     if (pinned[v]) loaded.cloth.pins.push_back(static_cast<Index>(v));
 }
@@ -172,6 +186,8 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   JsonObject object(value);
   LoadedCloth loaded;
   loaded.cloth.name = object.text("name", "cloth" + std::to_string(number));
+
+  // A file or a grid gives the mesh before its transform, with the rest shape beside it.
   const JsonValue mesh = object.required("mesh");
   if (mesh.json().is_string()) {
     read_cloth_mesh(object, folder, loaded);
@@ -179,16 +195,22 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
     make_cloth_grid(object, folder, loaded);
   }
   const Vec3d scale = place_cloth(object, loaded);
+
+  // Mesh files hold no unit, so sizes that garments do not have get a note.
   if (!loaded.grid) {
     const std::string note =
         unit_note("cloth '" + loaded.cloth.name + "'", loaded.cloth.mesh.positions, scale, true);
     if (!note.empty()) folder.note(note);
   }
+
+  // Pins follow the transform, since their boxes are given in the coordinates of the scene.
   if (object.has("pins")) parse_pins(object["pins"], loaded);
   const JsonValue material = object["material"];
   loaded.cloth.material = material.json().is_object()
                               ? parse_material(material.json(), material.where(), folder.path)
                               : load_material(object.text("material", "default"), folder.path);
+
+  // The folds of the rest shape are its rest angles unless the scene wants them flat.
   if (object.has("rest_angles")) {
     const std::string& angles = object["rest_angles"].text();
     if (angles != "mesh" && angles != "flat") object["rest_angles"].refuse("\"mesh\" or \"flat\"");

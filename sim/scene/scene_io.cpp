@@ -52,6 +52,9 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
     if (equals == std::string_view::npos || equals == 0)
       throw InputError("--set: value " + in_quotes(argument) + ", expected KEY=VALUE");
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
+
+    // A preset stands for several parameters; they keep their place in the order of arguments, so
+    // that later ones override it.
     if (key == "preset") {
       const auto settings = find_preset(value).settings;
       overrides.parameters.insert(overrides.parameters.end(), settings.begin(), settings.end());
@@ -66,6 +69,7 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
   return overrides;
 }
 
+/// Median of the edges at rest, since those of a stretched or bent start pose have other lengths.
 double median_edge(const Scene& scene) {
   std::vector<double> lengths;
   for (const Cloth& cloth : scene.cloths)
@@ -122,6 +126,8 @@ CameraPose framing_camera(const std::vector<Vec3d>& points) {
 
 Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
   Scene scene;
+
+  // The mesh is the cloth, at rest as it is in the file.
   scene.name = fs::path(path).stem().string();
   Cloth cloth;
   cloth.name = scene.name;
@@ -129,12 +135,15 @@ Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
   check_cloth_mesh(cloth.mesh, shown_path(path));
   cloth.mesh.uv.clear();  // may be texture coordinates of any size
   cloth.rest = cloth.mesh.positions;
+
   ClothMeshOptions options;
   options.object = "cloth " + in_quotes(cloth.name);
   options.file = path;
   origin.layouts.push_back(prepare_cloth_mesh(cloth, options, origin.notes));
   const std::string note = unit_note(options.object, cloth.mesh.positions, {1, 1, 1}, true);
   if (!note.empty()) origin.notes.push_back(note + " (in a scene file)");
+
+  // Without a scene file nothing says how to hold the cloth or how thick it is.
   cloth.material = load_material("default", "");
   hang_by_highest(cloth);
   scene.cloths.push_back(std::move(cloth));
@@ -197,11 +206,14 @@ Scene scene_of_json(const std::string& argument, double triangles, const SceneLi
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits, SceneOrigin* origin) {
+  // Callers that do not ask where the parts came from still need a place for the answer.
   SceneOrigin own;
   if (!origin) origin = &own;
   AirSettings air;
   const Overrides set = split_overrides(overrides, limits);
   auto scene = std::make_shared<Scene>();
+
+  // Thicknesses that the scene gives for its own mesh do not suit a coarser or finer one.
   if (is_mesh_name(argument)) {
     if (set.triangles > 0)
       throw InputError(shown_path(argument) + ": --set triangles: a mesh file has no grid");
@@ -211,18 +223,23 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
     if (set.triangles > 0) fit_thickness(*scene);
   }
   scene->source = argument;
+
   if (scene->cameras.empty()) {
     std::vector<Vec3d> points;
     for (const Cloth& cloth : scene->cloths)
       points.insert(points.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
     if (!points.empty()) scene->cameras.push_back(framing_camera(points));
   }
+
+  // Overrides win over the scene's own values, so they are set last.
   for (const auto& [key, value] : set.parameters) {
     set_parameter(scene->parameters, key, value);
     air.drag = air.drag || key == "wind.air_drag";
     air.density = air.density || key == "wind.air_density";
   }
   still_air_without_drag(*scene, air, *origin);
+
+  // The repair depends on the thickness, hence on all parameters.
   if (set.repair_start) repair_start(*scene, median_edge(*scene));
   return scene;
 }

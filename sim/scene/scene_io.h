@@ -11,13 +11,13 @@
 
 namespace icloth {
 
-/// What a scene may ask for at most: a small file must not take all memory.
+/// The largest meshes that a scene may ask for: a small file must not take all memory.
 struct SceneLimits {
   Index triangles = 20'000'000;      ///< of all cloths and obstacles together
   Index body_triangles = 8'000'000;  ///< of one sphere, capsule, box, plane or funnel
 };
 
-/// What the files of a scene hold beyond what is simulated.
+/// How the simulated vertices relate to those of the scene's files, and notes about the files.
 struct SceneOrigin {
   std::vector<FileLayout> layouts;  ///< of the mesh files of the cloths (cloths)
   std::vector<std::string> notes;   ///< what the user should know about the input, a line each

@@ -72,6 +72,8 @@ Vec3d smooth_position(const std::vector<PathPoint>& path, std::size_t i, double 
 
 std::vector<PathPoint> smoothed(const std::vector<PathPoint>& path) {
   std::vector<PathPoint> result;
+
+  // Points are set so densely that straight lines between them are as good as the curve.
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double length = path[i + 1].time - path[i].time;
     const auto pieces =
@@ -162,11 +164,15 @@ Index parse_vertex(JsonValue value, const LoadedCloth& cloth) {
   const FileLayout& layout = cloth.layout;
   const std::size_t vertices =
       layout.is_identity() ? cloth.cloth.mesh.positions.size() : layout.vertex.size();
+
+  // Numbers are those of the vertices in the file, of which some may be welded or unused.
   if (value.json().is_number()) {
     const std::int64_t number = value.integer(0, static_cast<std::int64_t>(vertices) - 1);
     return layout.is_identity() ? static_cast<Index>(number)
                                 : layout.vertex[static_cast<std::size_t>(number)];
   }
+
+  // A name counts where it stands for one vertex; names of borders stand for many.
   const std::string& name = value.text();
   const std::vector<Index> found =
       cloth.grid ? grid_vertices(*cloth.grid, name) : std::vector<Index>{};
@@ -181,10 +187,14 @@ ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths)
   JsonObject object(value);
   if (cloths.empty()) value.refuse("a scene with a cloth to grab");
   ScriptedGrab grab;
+
+  // A hand takes hold of one vertex, which a face has to contain.
   if (object.has("cloth")) grab.cloth = find_cloth(object["cloth"], cloths);
   grab.vertex =
       parse_vertex(object.required("vertex"), cloths[static_cast<std::size_t>(grab.cloth)]);
   if (grab.vertex == kNone) object["vertex"].refuse("a vertex that a face uses");
+
+  // It holds on for as long as its path lasts, unless the scene gives other times.
   grab.path = parse_path(object.required("path"));
   if (object.boolean("smooth", false)) grab.path = smoothed(grab.path);
   grab.radius = object.number("radius", 0, {0, 10});
@@ -232,6 +242,7 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   scene.source = source;
   parse_settings(object, scene);
 
+  // Triangles are counted while objects are read, so that a small file cannot take all memory.
   std::vector<LoadedCloth> cloths;
   std::set<std::string> cloth_names, obstacle_names;
   double triangles = std::round(total_grid_triangles(json) * folder.triangle_scale);
@@ -251,15 +262,19 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
       check_total(item.where() + " and the others", triangles, folder.limits);
     }
   }
+
+  // Grabs name vertices of cloths, which are all known now.
   if (object.has("input"))
     for (const JsonValue& item : object["input"].items())
       scene.input.push_back(parse_grab(item, cloths));
   if (object.has("cameras"))
     for (const JsonValue& item : object["cameras"].items())
       scene.cameras.push_back(parse_camera(item));
+
   refuse_feature(object, "light", "the picture has its own");
   object.finish();
   if (cloths.empty()) object["cloths"].refuse("at least one cloth");
+
   for (LoadedCloth& loaded : cloths) {
     scene.cloths.push_back(std::move(loaded.cloth));
     origin.layouts.push_back(std::move(loaded.layout));

@@ -95,7 +95,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   Obstacle obstacle;
   obstacle.name = object.text("name", "obstacle" + std::to_string(number));
 
-  // The surface: a file, of which not everything may be used, or a shape.
+  // The surface comes from a file, of which not everything may be used, or from a simple shape.
   const JsonValue mesh = object.required("mesh");
   if (mesh.json().is_string()) {
     Body body = read_body(find_asset(mesh.text(), folder.path));
@@ -106,7 +106,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
     obstacle.mesh = parse_body_shape(mesh, folder.limits.body_triangles);
   }
 
-  // Where it is, and how large.
+  // The transform is applied to the mesh at once, so that its size in metres can be judged.
   Placement place;
   if (object.has("transform")) place = parse_transform(object["transform"]);
   for (Vec3d& p : obstacle.mesh.positions) p = place(p);
@@ -116,7 +116,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
     if (!note.empty()) folder.note(note);
   }
 
-  // How it moves, and how cloth slides on it.
+  // Its motion may come from a point cache, from keyframes, or from both.
   if (object.has("animation")) parse_point_cache(object, folder, place, obstacle);
   obstacle.frame_rate = object.number("frame_rate", obstacle.frame_rate, {1e-3, 1e5});
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);

@@ -41,6 +41,7 @@ TriangleMesh parse_funnel(const JsonValue& value, Index most_triangles) {
   shape.wall = object.number("wall", shape.wall, kSize);
   shape.edge = object.number("edge", shape.edge, kSize);
   object.finish();
+
   // Both sides of the cone and of the pipe, and the two rims; each of these pieces and each ring is
   // rounded to whole edges, a ring to six at least.
   const double slope = std::hypot(shape.top_radius - shape.bottom_radius, shape.cone_height);
@@ -94,10 +95,13 @@ GridShape parse_grid(JsonValue value, Index triangles) {
   shape.width = size[0];
   shape.height = size[1];
   shape.triangles = triangles;
+
   const std::string orientation = object.text("orientation", "vertical");
   if (orientation != "vertical" && orientation != "horizontal")
     object["orientation"].refuse("\"vertical\" or \"horizontal\"");
   shape.horizontal = orientation == "horizontal";
+
+  // A bend rolls the width around an arc; without one the sheet is flat.
   if (object.has("bend")) {
     JsonObject bend(object["bend"]);
     shape.bend_radius = bend.required("radius").number(kSize);
@@ -122,6 +126,7 @@ TriangleMesh parse_body_shape(JsonValue value, Index most_triangles) {
 }
 
 Vec3d parse_rotation(JsonValue value) {
+  // An axis and an angle give the rotation vector directly.
   if (value.json().is_object()) {
     JsonObject object(value);
     const Vec3d axis = object.required("axis").vector();
@@ -130,11 +135,15 @@ Vec3d parse_rotation(JsonValue value) {
     if (!(norm(axis) > 0)) object["axis"].refuse("an axis longer than 0");
     return angle * kDegree * normalized(axis);
   }
+
   const Vec3d degrees = value.vector({-1e6, 1e6});
   const auto about = [](Vec3d axis) { return rotation_matrix(kDegree * axis); };
+
   // A turn about one axis keeps its full turns: keyframes may count beyond 360 degrees.
   const int axes = (degrees.x != 0) + (degrees.y != 0) + (degrees.z != 0);
   if (axes <= 1) return kDegree * degrees;
+
+  // Turns about several axes are combined, x first, as a product of matrices.
   const Mat3<double> x = about({degrees.x, 0, 0}), y = about({0, degrees.y, 0}),
                      z = about({0, 0, degrees.z});
   Mat3<double> result;

@@ -65,8 +65,10 @@ struct Ring {
 
 /// Triangles between two rings, the next one always at the ring that is behind.
 void connect(const Ring& lower, const Ring& upper, std::vector<Triangle>& faces) {
+  // A pole has one vertex, so the strip to it is a fan of triangles.
   const Index lower_steps = lower.count == 1 ? 0 : lower.count;
   const Index upper_steps = upper.count == 1 ? 0 : upper.count;
+
   for (Index i = 0, j = 0; i < lower_steps || j < upper_steps;) {
     const bool at_lower =
         j == upper_steps || (i < lower_steps && lower.middle(i) < upper.middle(j));
@@ -85,6 +87,8 @@ void connect(const Ring& lower, const Ring& upper, std::vector<Triangle>& faces)
 TriangleMesh revolve(const std::vector<Vec2d>& profile, double edge, bool closed_profile) {
   TriangleMesh mesh;
   std::vector<Ring> rings;
+
+  // Every second ring starts half a step later, which makes the triangles nearly equilateral.
   for (const auto& [radius, height] : profile) {
     Ring ring{static_cast<Index>(mesh.positions.size())};
     if (radius > 0) ring.count = std::max<Index>(6, steps(2 * kPi * radius, edge));
@@ -95,6 +99,8 @@ TriangleMesh revolve(const std::vector<Vec2d>& profile, double edge, bool closed
     }
     rings.push_back(ring);
   }
+
+  // A closed profile, such as the wall of the funnel, has its last ring next to its first one.
   for (std::size_t i = 1; i < rings.size(); ++i) connect(rings[i - 1], rings[i], mesh.faces);
   if (closed_profile) connect(rings.back(), rings.front(), mesh.faces);
   return mesh;
@@ -110,6 +116,7 @@ void add_profile(std::vector<Vec2d>& profile, Vec2d a, Vec2d b, double edge) {
 }  // namespace
 
 TriangleMesh make_sphere(double radius, Index triangles) {
+  // An icosahedron has 20 faces; its corners lie on three golden rectangles.
   const Index n = std::max<Index>(1, static_cast<Index>(std::ceil(std::sqrt(triangles / 20.0))));
   const double g = std::numbers::phi;
   const std::array<Vec3d, 12> corners{{{-1, g, 0},
@@ -128,6 +135,9 @@ TriangleMesh make_sphere(double radius, Index triangles) {
       {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
       {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
       {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+
+  // Each face becomes a triangular lattice that is projected onto the sphere. Neighbouring faces
+  // share the vertices along their common edge.
   TriangleMesh mesh;
   Welder welder(mesh);
   for (const auto& face : kFaces) {
@@ -137,6 +147,8 @@ TriangleMesh make_sphere(double radius, Index triangles) {
           a + (1.0 / n) * (static_cast<double>(i) * (b - a) + static_cast<double>(j) * (c - a));
       return welder.add(normalized(p));
     };
+
+    // The lattice has triangles that point as the face does, and between them those turned over.
     for (Index j = 0; j < n; ++j) {
       for (Index i = 0; i + j < n; ++i) {
         mesh.faces.push_back({point(i, j), point(i + 1, j), point(i, j + 1)});
@@ -150,10 +162,14 @@ TriangleMesh make_sphere(double radius, Index triangles) {
 }
 
 TriangleMesh make_capsule(double radius, double length, Index triangles) {
+  // The area and the wanted number of triangles give the edge of an equilateral one, and its height
+  // is the distance of rings.
   const double area = 2 * kPi * radius * length + 4 * kPi * radius * radius;
   const double edge = std::sqrt(area / std::max<Index>(triangles, 16) * 4 / std::numbers::sqrt3);
   const double band = edge * std::numbers::sqrt3 / 2;
   const Index cap = std::max<Index>(2, steps(kPi / 2 * radius, band));
+
+  // The profile goes from the south pole over the cylinder to the north pole.
   std::vector<Vec2d> profile;
   for (Index i = 0; i <= cap; ++i) {
     const double angle = kPi / 2 * i / cap;
@@ -175,6 +191,9 @@ TriangleMesh make_box(Vec3d size, double edge) {
   const Vec3d x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z}, low = -0.5 * size,
                                                                  high = 0.5 * size;
   const Index nx = steps(size.x, edge), ny = steps(size.y, edge), nz = steps(size.z, edge);
+
+  // Opposite sides are made from opposite corners with reversed directions, so that all face
+  // outwards.
   add_patch(mesh, welder, low, y, x, ny, nx);
   add_patch(mesh, welder, low, z, y, nz, ny);
   add_patch(mesh, welder, low, x, z, nx, nz);
@@ -195,6 +214,7 @@ TriangleMesh make_plane(double width, double depth, double edge) {
 TriangleMesh make_funnel(const FunnelShape& shape) {
   const double wall = shape.wall, band = shape.edge * std::numbers::sqrt3 / 2;
   const double pipe_end = -shape.cone_height - shape.pipe_length;
+
   // Counter-clockwise in (radius, height): up the outer wall, over the rim, down the inner wall.
   const Vec2d corners[] = {{shape.bottom_radius + wall, pipe_end},
                            {shape.bottom_radius + wall, -shape.cone_height},
@@ -202,6 +222,7 @@ TriangleMesh make_funnel(const FunnelShape& shape) {
                            {shape.top_radius, 0},
                            {shape.bottom_radius, -shape.cone_height},
                            {shape.bottom_radius, pipe_end}};
+
   std::vector<Vec2d> profile;
   for (std::size_t i = 0; i < 6; ++i) {
     const Vec2d a = corners[i], b = corners[(i + 1) % 6];
@@ -211,6 +232,7 @@ TriangleMesh make_funnel(const FunnelShape& shape) {
 }
 
 void subdivide(TriangleMesh& mesh, std::vector<Vec3d>& rest) {
+  // An edge is halved once, however many faces it has, so that the mesh stays connected.
   std::map<std::array<Index, 2>, Index> middle_of;
   const auto at = [](auto& list, Index i) -> auto& { return list[static_cast<std::size_t>(i)]; };
   const auto middle = [&](Index a, Index b) {
@@ -222,6 +244,8 @@ void subdivide(TriangleMesh& mesh, std::vector<Vec3d>& rest) {
     }
     return entry->second;
   };
+
+  // Each face becomes three at its corners and one in the middle, with the same orientation.
   const std::vector<Triangle> faces = std::move(mesh.faces);
   const std::vector<std::array<Vec2d, 3>> uv = std::move(mesh.uv);
   mesh.faces.clear();
@@ -230,6 +254,8 @@ void subdivide(TriangleMesh& mesh, std::vector<Vec3d>& rest) {
     const auto [a, b, c] = faces[f];
     const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     mesh.faces.insert(mesh.faces.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+
+    // Material coordinates belong to faces: at a seam the two sides halve them independently.
     if (uv.empty()) continue;
     const auto [ua, ub, uc] = uv[f];
     const Vec2d uab = 0.5 * (ua + ub), ubc = 0.5 * (ub + uc), uca = 0.5 * (uc + ua);

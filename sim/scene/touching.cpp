@@ -45,6 +45,7 @@ class NeighbourTest {
     const Triangle& t = faces_[at(other)];
     for (const Index v : faces_[at(own)]) {
       if (has(t, v) || !point_meets(x(v), {x(t[0]), x(t[1]), x(t[2])})) continue;
+
       Touch touch{Touch::Kind::vertex_face,
                   {v, t[0], t[1], t[2]},
                   std::min(own, other),

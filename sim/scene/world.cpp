@@ -50,6 +50,8 @@ void check_finite(const std::string& object, const std::vector<Vec3d>& positions
 
 void check_cloth(const Cloth& cloth) {
   const std::size_t count = cloth.mesh.positions.size();
+
+  // The arrays have to fit each other before their entries can be looked at.
   if (!cloth.rest.empty() && cloth.rest.size() != count)
     throw InputError("cloth " + in_quotes(cloth.name) + ": the rest shape has " +
                      std::to_string(cloth.rest.size()) + " vertices, expected " +
@@ -58,6 +60,8 @@ void check_cloth(const Cloth& cloth) {
     throw InputError("cloth " + in_quotes(cloth.name) + ": uv of " +
                      std::to_string(cloth.mesh.uv.size()) + " faces, expected " +
                      std::to_string(cloth.mesh.faces.size()));
+
+  // Positions must be numbers, and indices must refer to vertices.
   check_finite("cloth " + in_quotes(cloth.name), cloth.mesh.positions);
   check_finite("cloth " + in_quotes(cloth.name) + " (rest shape)", cloth.rest);
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
@@ -65,6 +69,7 @@ void check_cloth(const Cloth& cloth) {
       if (v < 0 || at(v) >= count)
         throw InputError(element(cloth, "face", f) + ": vertex " + std::to_string(v) +
                          ", expected 0 to " + std::to_string(count - 1));
+
   for (Index v : cloth.pins)
     if (v < 0 || at(v) >= count)
       throw InputError("cloth " + in_quotes(cloth.name) + ": pinned vertex " + std::to_string(v) +
@@ -124,6 +129,7 @@ double rest_angle(const std::vector<Vec3d>& x, const std::array<Index, 4>& v) {
 
 /// All half-edges of an object, sorted so that those of one edge stand together.
 std::vector<HalfEdge> sorted_half_edges(const World& world, const WorldObject& object) {
+  // Faces of any number may meet at an edge, therefore sorting is simpler than linking pairs.
   std::vector<HalfEdge> half_edges;
   half_edges.reserve(3 * at(object.face_count));
   for (Index f = object.first_face; f < object.first_face + object.face_count; ++f) {
@@ -133,6 +139,7 @@ std::vector<HalfEdge> sorted_half_edges(const World& world, const WorldObject& o
       half_edges.push_back({{std::min(a, b), std::max(a, b)}, f, corner});
     }
   }
+
   std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
   });
@@ -165,9 +172,14 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
   const WorldObject& object = world.objects.back();
   const auto& rest = rest_positions(cloth);
   world.rest.insert(world.rest.end(), rest.begin(), rest.end());
+
+  // Vertices gather their shares from the faces around them.
   world.area.resize(at(world.vertices), 0.0);
   world.mass.resize(at(world.vertices), 0.0);
   world.pinned.resize(at(world.vertices), 0);
+
+  // The inverse of the edge matrix Dm exists only where a face has an area, in its material space
+  // and in space.
   for (std::size_t f = 0; f < corners.size(); ++f) {
     const Vec2d a = corners[f][1] - corners[f][0], b = corners[f][2] - corners[f][0];
     const double det = cross2(a, b), area = 0.5 * std::fabs(det);
@@ -179,6 +191,8 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
     world.face_material.push_back(object.source);
     for (Index v : cloth.mesh.faces[f]) world.area[at(object.first_vertex + v)] += area / 3;
   }
+
+  // A vertex without mass could not be accelerated, so it is refused here rather than in a step.
   for (Index v = 0; v < object.vertex_count; ++v) {
     const std::size_t i = at(object.first_vertex + v);
     world.mass[i] = cloth.material.density * world.area[i];
@@ -187,6 +201,7 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
                        (world.area[i] > 0 ? ": density must be above 0"
                                           : ": used by no face, expected at least one"));
   }
+
   for (Index v : cloth.pins) world.pinned[at(object.first_vertex + v)] = 1;
 }
 
@@ -198,14 +213,19 @@ Hinge make_hinge(const World& world, const WorldObject& object, const std::vecto
   const Corners& u0 = corners[at(first.face - object.first_face)];
   const Corners& u1 = corners[at(second.face - object.first_face)];
   const std::size_t i = at(first.corner), j = at(second.corner);
+
+  // Both faces bring their vertices; the first one also gives the direction of the edge.
   Hinge hinge;
   hinge.vertices = {face0[i], face0[(i + 1) % 3], face0[(i + 2) % 3], face1[(j + 2) % 3]};
   hinge.face0 = first.face;
   hinge.face1 = second.face;
+
+  // Lengths and directions are those in the material space of the first face.
   const Vec2d edge = u0[(i + 1) % 3] - u0[i];
   hinge.rest_length = std::hypot(edge.x, edge.y);
   hinge.direction = std::atan2(std::fabs(edge.y), std::fabs(edge.x));
   hinge.rest_area = world.face_area[at(first.face)] + world.face_area[at(second.face)];
+
   // A seam joins two places of the pattern: its flaps were never one flat piece, and the fold of
   // the given shape is not a rest shape of theirs.
   const bool same_way = face1[j] == face0[i];
@@ -226,12 +246,16 @@ void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
     while (end < half_edges.size() && half_edges[end].edge == half_edges[begin].edge) ++end;
     world.edge.push_back(half_edges[begin].edge);
     if (!cloth) continue;
+
     if (end - begin > kMostFacesOnEdge)
       throw InputError("cloth '" + cloth->name + "', edge between vertices " +
                        std::to_string(half_edges[begin].edge[0] - object.first_vertex) + " and " +
                        std::to_string(half_edges[begin].edge[1] - object.first_vertex) + ": " +
                        std::to_string(end - begin) + " faces, expected at most " +
                        std::to_string(kMostFacesOnEdge));
+
+    // Every two faces of an edge bend against each other. The weights of all pairs that one face
+    // belongs to sum up to 1.
     double area = 0;
     for (std::size_t i = begin; i < end; ++i) {
       area += world.face_area[at(half_edges[i].face)];
@@ -260,6 +284,7 @@ double median_edge_length(const World& world) {
 }  // namespace
 
 World make_world(const Scene& scene) {
+  // Cloths come first, so that their elements have the same numbers with and without obstacles.
   World world;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const Cloth& cloth = scene.cloths[c];
@@ -269,9 +294,12 @@ World make_world(const Scene& scene) {
     append_rest_state(world, cloth, corners);
     append_edges(world, world.objects.back(), &cloth, corners);
   }
+
   world.cloth_vertices = world.vertices;
   world.cloth_edges = world.edges;
   world.cloth_faces = world.faces;
+
+  // Obstacles start where they are at time 0, which may differ from their mesh.
   std::vector<Vec3d> pose;
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
     const Obstacle& obstacle = scene.obstacles[o];
