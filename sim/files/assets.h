@@ -1,4 +1,4 @@
-// Where the files that come with the program are.
+// Places of the files that come with the program.
 #pragma once
 
 #include <string>

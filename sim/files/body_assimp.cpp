@@ -97,12 +97,16 @@ void merge_coinciding(TriangleMesh& body) {
   std::map<std::array<double, 3>, Index> first_at;
   std::vector<Vec3d> positions;
   std::vector<Index> number;
+
+  // Vertices are merged where all digits agree, since split ones are copies of each other.
   for (Vec3d p : body.positions) {
     const auto [entry, is_new] =
         first_at.try_emplace({p.x, p.y, p.z}, static_cast<Index>(positions.size()));
     if (is_new) positions.push_back(p);
     number.push_back(entry->second);
   }
+
+  // A face that loses a corner by that has no area.
   for (Triangle& face : body.faces)
     for (Index& v : face) v = number[static_cast<std::size_t>(v)];
   std::erase_if(body.faces,
@@ -161,6 +165,8 @@ Body read_with_assimp(const std::string& path) {
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesOfFolder(path));  // the importer deletes it
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+
+  // A lack of memory is told apart, because it is no fault in the file's format.
   if (!scene || !scene->mRootNode) {
     const std::string reason = importer.GetErrorString();
     if (reason.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
@@ -176,6 +182,7 @@ Body read_with_assimp(const std::string& path) {
   if (body.mesh.faces.empty())
     throw InputError(shown_path(path) + ": 0 triangles, expected at least one");
 
+  // Clips and bones are read for notes, since they are not played.
   body.clips = clips_of(*scene);
   body.bones = bones_of(*scene);
   return body;

@@ -7,7 +7,7 @@
 
 namespace icloth {
 
-/// As read_body, of any format that assimp knows, without any protection from what is in the file.
+/// Reads a body of any format that assimp knows, without any protection against hostile files.
 Body read_with_assimp(const std::string& path);
 
 }  // namespace icloth

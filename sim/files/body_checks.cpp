@@ -29,6 +29,8 @@ void check_glb(std::string_view bytes, const std::string& path) {
     throw InputError(shown_path(path) + ": " + element + ": value " + std::to_string(value) +
                      ", expected " + expected);
   };
+
+  // The length in the header shows whether the file was cut off.
   if (bytes.size() < kHeader + kChunkHeader || !bytes.starts_with("glTF"))
     throw InputError(shown_path(path) +
                      ": header: expected 'glTF', a version, a length and a chunk");
@@ -56,8 +58,12 @@ void check_glb(std::string_view bytes, const std::string& path) {
 /// so do some binary files.
 void check_stl(std::string_view bytes, const std::string& path) {
   constexpr std::uint64_t kHeader = 84, kTriangle = 50;
+
+  // A zero byte near the beginning shows that the file is binary in spite of the word.
   const auto begin = bytes.substr(0, 512);
   if (begin.starts_with("solid") && begin.find('\0') == std::string_view::npos) return;
+
+  // The number of triangles has to fit the size of the file, since memory is taken for all of them.
   if (bytes.size() < kHeader)
     throw InputError(shown_path(path) + ": value " + std::to_string(bytes.size()) +
                      " bytes, expected a header of 84");

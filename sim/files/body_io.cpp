@@ -52,8 +52,9 @@ nlohmann::json head_of(const Body& body) {
   return head;
 }
 
-/// What the child sends for a file.
+/// The answer of the child process about a file: a body, or an error.
 std::string read_and_encode(const std::string& path) {
+  // Exceptions cannot reach the parent process, so each becomes a line of text in the answer.
   try {
     check_body(read_file(path, kLargestBody), path);
     const Body body = read_with_assimp(path);
@@ -105,6 +106,7 @@ class Decoder {
 
   /// The head of the answer, and arrays of the announced size where as many bytes follow.
   Body body_of(const JsonValue& head) const {
+    // The counts must fit the bytes that follow before memory is taken for them.
     JsonObject object(head);
     const auto most = static_cast<std::int64_t>(kLargestCount);
     const auto count = [&](const char* key) {
@@ -113,6 +115,7 @@ class Decoder {
     const std::size_t vertices = count("vertices"), faces = count("faces");
     if (vertices * sizeof(Vec3d) + faces * sizeof(Triangle) != rest_.size()) refuse();
 
+    // The arrays are only sized here; the caller fills them from those bytes.
     Body body;
     body.bones = count("bones");
     for (const JsonValue& item : object.required("clips").items()) {

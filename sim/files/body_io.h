@@ -25,7 +25,7 @@ struct Body {
 /// assimp, all meshes merged, node transforms and bind skinning applied, coinciding vertices
 /// merged. Throws InputError, also for such a format in a program that was built without assimp.
 ///
-/// What assimp reads is read in a child process with limits on memory, time and stack, so that no
+/// Files for assimp are read in a child process with limits on memory, time and stack, so that no
 /// file can take this program down (sim/files/body_process.h). The main function of a program that
 /// reads bodies calls serve_body_reader first; without it std::logic_error is thrown.
 Body read_body(const std::string& path);

@@ -117,6 +117,7 @@ std::string receive(int file, const ProcessLimits& limits, std::string& bytes) {
     const int ready = poll(&wait, 1, static_cast<int>(std::min<long>(left.count(), 60'000)));
     if (ready <= 0) continue;
 
+    // Nothing is kept beyond the limit, however much the child sends.
     const ssize_t count = read(file, piece, sizeof piece);
     if (count == 0) return "";
     if (count < 0 && errno == EINTR) continue;

@@ -6,7 +6,7 @@
 
 namespace icloth {
 
-/// What the reading of one file may cost.
+/// Limits on the reading of one file.
 struct ProcessLimits {
   std::uint64_t memory = 0;   ///< address space beyond what the program itself maps [bytes]
   std::uint64_t result = 0;   ///< [bytes] sent back

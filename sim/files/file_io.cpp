@@ -106,6 +106,7 @@ void write_file(const std::string& path, std::string_view contents) {
 }
 
 void append_file(const std::string& path, std::string_view contents) {
+  // The present size says how much to cut off after an error. Devices such as a terminal have none.
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   const bool is_regular = !error;
@@ -116,7 +117,7 @@ void append_file(const std::string& path, std::string_view contents) {
   const bool closed = std::fclose(file.release()) == 0;
   if (written && closed) return;
 
-  // What did get in is taken back.
+  // A part that was written is cut off again; the message must give the reason of the first error.
   const int reason = errno;
   if (is_regular) std::filesystem::resize_file(path, size, error);
   errno = reason;

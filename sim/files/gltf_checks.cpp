@@ -66,6 +66,8 @@ class GltfChecker {
   void check_buffer(const JsonValue& buffer) {
     const std::int64_t bytes = number(buffer, "byteLength", 0);
     const std::string uri = text(buffer, "uri");
+
+    // The bytes are in the binary chunk, in the text of the URI, or in another file.
     std::uint64_t available = chunk_bytes_;
     if (uri.starts_with("data:")) {
       const std::size_t comma = uri.find(',');  // base64: four letters hold three bytes
@@ -73,6 +75,7 @@ class GltfChecker {
     } else if (!uri.empty()) {
       available = regular_file_size(buffer_path(*member(buffer, "uri")));
     }
+
     // A buffer with no data at all is one that an extension fills.
     const bool filled = !uri.empty() || buffers_.empty();
     if (filled && static_cast<std::uint64_t>(bytes) > available + 2)
@@ -109,6 +112,8 @@ class GltfChecker {
     const std::int64_t size = element_bytes(accessor);
     const auto view = member(accessor, "bufferView");
     if (!view) return;  // all zero, or filled by an extension
+
+    // The last element has to end within the view. Elements may lie further apart than their size.
     const View& where = views_[index(*view, views_.size())];
     const std::int64_t stride = where.stride > 0 ? where.stride : size;
     const std::int64_t end =
@@ -135,6 +140,8 @@ class GltfChecker {
   /// Every node has one parent at most, and following the parents ends soon.
   void check_nodes() const {
     const std::vector<JsonValue> nodes = items("nodes");
+
+    // The nodes are a forest when each of them is the child of one other node at most.
     std::vector<std::size_t> parent(nodes.size(), nodes.size());
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const auto children = member(nodes[n], "children");
@@ -145,8 +152,10 @@ class GltfChecker {
         its_parent = n;
       }
     }
-    // depth[n]: of the nodes above n; 0 where it is not known yet.
+    // depth[n] counts the nodes from the root down to n; 0 means that it is not known yet.
     std::vector<std::size_t> depth(nodes.size(), 0);
+
+    // A walk upwards ends at the first node whose depth is known, so all walks together are short.
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       std::size_t steps = 0, at = n;
       for (; at != nodes.size() && depth[at] == 0; at = parent[at])

@@ -30,11 +30,14 @@ std::size_t checked_frames(std::string_view bytes, const std::string& path, Inde
   if (bytes.size() < kHeaderBytes)
     throw InputError(path + ": value " + std::to_string(bytes.size()) +
                      " bytes, expected a header of 8");
+
   const auto refuse = [&](const char* element, std::int64_t value, const std::string& expected) {
     throw InputError(path + ": header: " + element + ": value " + std::to_string(value) +
                      ", expected " + expected);
   };
   const std::int32_t frames = load_count(bytes.data()), points = load_count(bytes.data() + 4);
+
+  // The counts have to be those of the mesh, and the file large enough for them.
   if (points < 1) refuse("points", points, "at least 1");
   if (points != vertices) refuse("points", points, std::to_string(vertices) + ", as in the mesh");
   if (frames < 1) refuse("frames", frames, "at least 1");
@@ -77,6 +80,8 @@ double even_rate(const std::vector<double>& times) {
 PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vertices) {
   const std::size_t frames = checked_frames(bytes, path, vertices);
   const char* data = bytes.data() + kHeaderBytes;
+
+  // The times of all frames come first, then the points of one frame after the other.
   PointCache cache;
   cache.frame_rate = even_rate(load_times(data, frames, path));
   data += frames * sizeof(float);

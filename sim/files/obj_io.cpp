@@ -51,6 +51,8 @@ class ObjParser {
     std::string_view line = next_physical_line();
     line = line.substr(0, line.find('#'));
     if (!take_backslash(line)) return line;
+
+    // The pieces of a statement are copied into one text, with blanks in place of the line breaks.
     joined_ = line;
     for (bool goes_on = true; goes_on && !text_.empty();) {
       line = next_physical_line();
@@ -75,6 +77,8 @@ class ObjParser {
   void parse_line(std::string_view line) {
     Words words(line);
     const std::string_view key = words.next();
+
+    // Other statements, such as normals and materials, are passed over.
     if (key == "v") {
       parse_vertex(words);
     } else if (key == "vt") {
@@ -157,6 +161,8 @@ class ObjParser {
     triangles_.clear();
     const std::string expected = cut_polygon(places_, triangles_);
     if (!expected.empty()) refuse(element, std::to_string(corners.size()) + " corners", expected);
+
+    // Polygons are remembered, because a rest shape has to be cut in the same way.
     const auto at = [&](Index c) { return corners[static_cast<std::size_t>(c)]; };
     if (corners.size() > 3) {
       FilePolygon& polygon = file_.polygons.emplace_back();

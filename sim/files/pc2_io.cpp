@@ -21,6 +21,8 @@ void check(const Header& header, const std::string& path, Index vertices, std::s
     throw InputError(path + ": header: " + element + ": value " + std::to_string(value) +
                      ", expected " + expected);
   };
+
+  // The counts have to be those of the mesh, and the file large enough for them.
   if (header.version != 1) refuse("version", header.version, "1");
   if (header.vertices < 1) refuse("vertices", header.vertices, "at least 1");
   if (header.vertices != vertices)
@@ -46,6 +48,7 @@ PointCache parse_pc2(std::string_view bytes, const std::string& path, Index vert
     throw InputError(path + ": header: signature, expected POINTCACHE2");
   check(header, path, vertices, bytes.size());
 
+  // The points follow the header, one frame after the other.
   PointCache cache;
   cache.frames.resize(static_cast<std::size_t>(header.frames));
   const char* data = bytes.data() + sizeof header;

@@ -161,9 +161,12 @@ class PlyParser {
 
   double next_number(const ScalarName& type, const std::string& where) {
     if (format_ == Format::ascii) return next_ascii(where);
+
+    // Binary numbers come in the byte order that the header gives.
     if (rest_.size() < type.bytes) refuse(where, "(end of file)", "more data");
     const char* bytes = rest_.data();
     rest_.remove_prefix(type.bytes);
+
     switch (type.type) {
       case Scalar::i8:
         return load<std::int8_t>(bytes, format_);
@@ -220,6 +223,8 @@ class PlyParser {
   void parse_vertex(const Element& element, const std::string& where) {
     std::array<double, 3> p;
     p.fill(std::numeric_limits<double>::quiet_NaN());
+
+    // Files may hold properties besides the coordinates and have them in any order.
     for (const Property& property : element.properties) {
       const std::size_t count = property.list ? list_length(property, where) : 1;
       for (std::size_t k = 0; k < count; ++k) {
@@ -228,6 +233,8 @@ class PlyParser {
         if (property.name.size() == 1 && axis < 3) p[axis] = value;
       }
     }
+
+    // A coordinate that the file lacks is still not a number here, and is refused as well.
     for (double x : p)
       if (!(std::abs(x) <= kLargestCoordinate))
         refuse(where, number_text(x), "three finite coordinates");
@@ -269,7 +276,7 @@ class PlyParser {
     for (std::size_t f = 0; f < face_ends_.size(); ++f) {
       const std::string where = "face " + std::to_string(f);
 
-      // Where the corners are.
+      // The cut works on places, and numbers of vertices can be checked only now.
       places.clear();
       for (std::size_t k = begin; k < face_ends_[f]; ++k) {
         const Index v = corners_[k];
@@ -285,11 +292,14 @@ class PlyParser {
       if (!expected.empty()) refuse(where, std::to_string(places.size()) + " corners", expected);
       if (file_.mesh.faces.size() + triangles.size() > kLargestCount)
         refuse(where, "one more", "at most 536870911 triangles");
+
+      // Polygons are remembered, because a rest shape has to be cut in the same way.
       if (places.size() > 3)
         file_.polygons.push_back({static_cast<Index>(file_.mesh.faces.size()),
                                   static_cast<Index>(triangles.size()),
                                   {corners_.begin() + static_cast<std::ptrdiff_t>(begin),
                                    corners_.begin() + static_cast<std::ptrdiff_t>(face_ends_[f])}});
+
       const auto vertex = [&](Index c) { return corners_[begin + static_cast<std::size_t>(c)]; };
       for (const Triangle& t : triangles)
         file_.mesh.faces.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});

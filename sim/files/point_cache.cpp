@@ -1,4 +1,4 @@
-// What the formats of point caches have in common.
+// Reading of point caches, and the checks that their formats share.
 #include <string>
 
 #include "sim/files/error.h"

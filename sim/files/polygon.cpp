@@ -90,6 +90,8 @@ bool crosses_itself(const std::vector<GridPoint>& x) {
   const std::size_t n = x.size();
   const auto left = [&](std::size_t i) { return std::min(x[i].x, x[(i + 1) % n].x); };
   const auto right = [&](std::size_t i) { return std::max(x[i].x, x[(i + 1) % n].x); };
+
+  // In the order of their left ends, the edges that can cross an edge stand right behind it.
   std::vector<std::size_t> edges(n);
   std::iota(edges.begin(), edges.end(), std::size_t{0});
   std::ranges::sort(edges, {}, [&](std::size_t i) { return std::pair(left(i), i); });
@@ -127,6 +129,8 @@ class EarClipper {
       triangles.push_back(triangle_of(ear));
       cut_off(ear);
     }
+
+    // The corners that remain have to turn as the polygon does.
     const Triangle last = triangle_of(first_);
     triangles.push_back(last);
     return turn(x_[at(last[0])], x_[at(last[1])], x_[at(last[2])]) > 0;
@@ -162,6 +166,8 @@ class EarClipper {
     corner.straight = shape <= least_shape();
     corner.shape = 0;
     if (corner.straight) return;
+
+    // A triangle that holds another corner is no ear.
     for (const Index other : straight_) {
       const Corner& o = corners_[at(other)];
       if (!o.gone && o.straight && holds(t, other)) return;
@@ -243,6 +249,8 @@ std::string cut_ring(std::span<const Vec3d> corners, std::vector<Triangle>& tria
 std::string cut_polygon(std::span<const Vec3d> corners, std::vector<Triangle>& triangles) {
   const std::string most = "at most " + std::to_string(kMostCorners) + " corners";
   if (corners.size() > kMostCorners) return most;
+
+  // A triangle has nothing to cut; whether it has an area is tested with the mesh.
   if (corners.size() == 3) {
     triangles.push_back({0, 1, 2});
     return "";
@@ -260,6 +268,7 @@ std::string cut_polygon(std::span<const Vec3d> corners, std::vector<Triangle>& t
     for (const Index i : ring) places.push_back(corners[at(i)]);
     expected = cut_ring(places, found);
   }
+
   if (!expected.empty()) return expected;
   for (const Triangle& t : found)
     triangles.push_back({ring[at(t[0])], ring[at(t[1])], ring[at(t[2])]});
@@ -296,6 +305,7 @@ void cut_like(const MeshFile& pattern, MeshFile& file) {
         uv.emplace_back(file.mesh.faces[f][c], file.mesh.uv[f][c]);
     std::ranges::stable_sort(uv, {}, &std::pair<Index, Vec2d>::first);
 
+    // Corners keep their texture coordinates, though the triangles around them change.
     for (std::size_t f = first; f < end; ++f) {
       file.mesh.faces[f] = pattern.mesh.faces[f];
       for (std::size_t c = 0; c < 3 && !uv.empty(); ++c) {

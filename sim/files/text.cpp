@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kLongestName = 64;
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // One row of the table of distances is kept: those from the first letters of `a` to all
+  // beginnings of `b`.
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -44,6 +46,7 @@ Character first_character(std::string_view text) {
   const std::size_t bytes = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
   if (lead < 0xC2 || lead > 0xF4 || text.size() < bytes) return {};
 
+  // The first byte holds the upper bits of the code, and each further one six more.
   std::uint32_t code = lead & (0x7Fu >> bytes);
   for (std::size_t k = 1; k < bytes; ++k) {
     if (!is_continuation(text[k])) return {};
@@ -63,7 +66,7 @@ bool is_control(std::uint32_t code) {
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF;
 }
 
-/// Where character `k` of valid UTF-8 begins; the end where there are fewer.
+/// Byte at which character `k` of valid UTF-8 begins, or the end of a text that is shorter.
 std::size_t offset_of(std::string_view text, std::size_t k) {
   std::size_t at = 0;
   for (; at < text.size(); ++at)
@@ -81,6 +84,8 @@ std::size_t character_count(std::string_view text) {
 std::string harmless(std::string_view text) {
   std::string result;
   result.reserve(text.size());
+
+  // A message is one line, and nothing in it may move the cursor or change how the rest looks.
   while (!text.empty()) {
     const auto [bytes, code] = first_character(text);
     if (code == '\n' || code == '\r' || code == '\t') {
@@ -141,6 +146,8 @@ std::string brief_number(double value) {
   if (value == 0) return "0";
   const double size = std::fabs(value);
   char text[40];
+
+  // Usual values have two digits, and whole numbers are written up to four digits.
   if (size >= 0.01 && size < 9.95) {
     std::snprintf(text, sizeof text, "%.2g", value);
     return text;

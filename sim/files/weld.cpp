@@ -81,6 +81,8 @@ std::vector<std::array<Index, 2>> border_edges(const TriangleMesh& mesh) {
       edges.push_back({std::min(a, b), std::max(a, b)});
     }
   std::ranges::sort(edges);
+
+  // Equal edges stand next to each other now; a border edge stands alone.
   std::vector<std::array<Index, 2>> border;
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end] == edges[begin]) ++end;
@@ -112,6 +114,7 @@ bool snap_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, double distance
     });
     if (!all_seen) return false;
 
+    // A vertex that has no such neighbour keeps its own place, so later ones can move onto it.
     if (nearest == kNone) {
       kept.add(start, static_cast<Index>(v));
     } else {
@@ -176,10 +179,14 @@ WeldReport merge_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, bool wel
 
 std::size_t near_border_vertices(const TriangleMesh& mesh, double distance) {
   std::vector<std::array<Index, 2>> border = border_edges(mesh);
+
+  // Vertices have several border edges and count once.
   std::vector<Index> vertices;
   for (const auto& [a, b] : border) vertices.insert(vertices.end(), {a, b});
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+
+  // A vertex is compared with those before it alone, so one vertex of each pair is counted.
   NearPoints before(distance);
   std::size_t found = 0;
   for (const Index v : vertices) {

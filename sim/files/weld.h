@@ -20,7 +20,7 @@ struct FileLayout {
   bool is_identity() const { return vertex.empty(); }
 };
 
-/// What became of the vertices of a file.
+/// Counts of the vertices of a file that are not simulated by themselves.
 struct WeldReport {
   std::size_t welded = 0;  ///< vertices that are at the place of an earlier one, and now the same
   std::size_t apart = 0;   ///< the same, but their rest places differ: they stay two
@@ -40,8 +40,8 @@ bool snap_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, double distance
 WeldReport merge_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, bool weld,
                           FileLayout& layout);
 
-/// Vertices on the border of a mesh that lie within `distance` of another one on the border
-/// without sharing an edge with it: what is left apart at a seam.
+/// Counts the vertices on the border of a mesh that lie within `distance` of another one on the
+/// border without sharing an edge with it, as at a seam that is not closed.
 std::size_t near_border_vertices(const TriangleMesh& mesh, double distance);
 
 /// Number in the file of every vertex of the mesh, the first one of those that share its place.

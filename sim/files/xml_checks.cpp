@@ -64,6 +64,8 @@ class XmlChecker {
 
   bool next_tag() {
     if (!skip_behind("<")) return false;
+
+    // Comments, literal text and instructions may hold signs that look like tags.
     if (rest_.starts_with("!--")) return skip_behind("-->");
     if (rest_.starts_with("![CDATA[")) return skip_behind("]]>");
     if (rest_.starts_with('?') || rest_.starts_with('!')) return skip_behind(">");
@@ -77,6 +79,7 @@ class XmlChecker {
       else if (rest_[end] == quote)
         quote = '\0';
     }
+
     const std::string_view tag = rest_.substr(0, end);
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     if (tag.starts_with('/')) {
@@ -124,6 +127,8 @@ class XmlChecker {
     std::vector<Mark> mark(graph_.name.size(), Mark::unseen);
     std::vector<double> count(graph_.name.size(), 1);
     std::vector<std::pair<std::size_t, std::size_t>> stack;  // node, its next child
+
+    // A stack takes the place of recursion, since a file could exhaust that of the program.
     for (std::size_t start = 0; start < mark.size(); ++start) {
       if (mark[start] == Mark::unseen) stack.emplace_back(start, 0);
       while (!stack.empty()) {
