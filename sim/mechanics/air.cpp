@@ -32,6 +32,8 @@ struct AirWork {
 double Air::work(const ForceContext& c, View<const Vec3r> dv) const {
   const Wind wind = wind_of(c.parameters);
   if (!wind.blows()) return 0;
+
+  // The work is that of the linearised force, which is the one that the solve applied.
   return reduce("implicit.air_work", c.mesh.cloth_faces, 0.0,
                 AirWork{.face = c.mesh.face.view(),
                         .inverse_mass = c.state.inverse_mass.view(),

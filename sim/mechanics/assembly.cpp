@@ -57,6 +57,8 @@ void Assembly::begin_substep(SubstepContext& step) {
 void Assembly::assemble_faces(const ForceContext& context) {
   const Topology& mesh = context.mesh;
   face_terms_.resize(mesh.cloth_faces);
+
+  // All forces add to a face in one pass, so that its data are loaded once.
   auto shares = forces_.bundle([&](const auto& force) { return force.face_share(context); });
   for_each("implicit.faces", mesh.cloth_faces,
            FacePass<decltype(shares)>{.face = mesh.face.view(),
@@ -73,6 +75,7 @@ void Assembly::assemble(const ForceContext& context) {
   assemble_faces(context);
   forces_.each([&](auto& force) { force.prepare(context); });
 
+  // A row gathers the terms of its faces and elements in a fixed order, which needs no atomics.
   const Topology& mesh = context.mesh;
   const State& s = context.state;
   const GravityParameters& g = context.parameters.gravity;

@@ -11,8 +11,8 @@ namespace icloth::ICLOTH_BUILD {
 
 class Assembly {
  public:
-  /// Lays out the matrix where it does not fit what the forces couple: one block for each pair of
-  /// vertices that a face or an element of another force couples. The pattern, where it is new.
+  /// Lays out the matrix anew when the forces couple other vertices than before: one block for each
+  /// pair of vertices that a face or an element of another force couples. Returns a new pattern.
   std::optional<Pattern> match_pattern(const World& world, const Topology& mesh);
 
   /// Lets the forces bring their own state to the shape x0.

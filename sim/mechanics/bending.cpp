@@ -68,7 +68,8 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
   motions_.resize(mesh.hinge_count);
   plates_.resize(mesh.cloth_faces);
 
-  // Angles of the hinges → torques of the faces on them → sums of both faces.
+  // Hinges find their angles, faces turn these into torques, and hinges add up the torques of their
+  // two faces.
   for_each("implicit.angles", mesh.hinge_count,
            HingeAngles{.hinge = single.hinge,
                        .fabric = single.fabric,
@@ -95,6 +96,8 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
 void Bending::add_energy(const EnergyContext& c, ForceEnergy& energy) const {
   const Topology& mesh = c.mesh;
   if (!mesh.bends) return;
+
+  // The two models are energies of hinges and of faces, respectively.
   if (c.parameters.material.bending == BendingModel::hinge)
     energy.elastic += reduce("statistics.bending", mesh.hinge_count, 0.0,
                              HingeEnergy{mesh.hinge.view(), mesh.fabric.view(), c.x}, Sum{});

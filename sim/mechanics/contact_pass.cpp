@@ -95,10 +95,14 @@ struct FinishRow {
 
   ICLOTH_HD void operator()(Index i) const {
     contact_rhs[i] = rhs[i];
+
+    // A prescribed vertex has no equation.
     if (!(inverse_mass[i] > 0)) {
       inverse_diagonal[i] = Mat3r{};
       return;
     }
+
+    // The contacts at the vertex add their impulses, and their blocks to its diagonal block.
     Mat3r block = value[row_first[i]];  // the diagonal comes first
     couplings.of_vertex(i, [&](Index k, Real w) {
       const Coupling& c = couplings.list[k];

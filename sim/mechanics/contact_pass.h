@@ -9,7 +9,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// What a linearisation asks to be solved.
+/// The linear system of one linearisation, before its contacts are added.
 struct ContactSystem {
   const BlockMatrix& matrix;  ///< without contacts
   View<const Vec3r> rhs;      ///< without contacts [N·s] (cloth_vertices)

@@ -5,7 +5,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Figures of a state of the cloth.
+/// Statistics of a state of the cloth.
 struct StateFigures {
   double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
   double outer = 0;   ///< energy of other conservative forces from outside [J]
@@ -20,7 +20,7 @@ struct StateFigures {
 StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
                         View<const Vec3r> v);
 
-/// Writes the figures of the state (x1, v) to the report; returns its energy [J].
+/// Writes the statistics of the state (x1, v) to the report; returns its energy [J].
 double report_state(const Forces& forces, const Topology& mesh, const State& state,
                     const Parameters& parameters, StepReport& report);
 

@@ -37,6 +37,8 @@ Fabric make_fabric(const Material& material, const Parameters& p) {
   f.measured = material.law == Material::Law::measured;
   f.bending_spacing = real(material.bending_spacing);
   f.bending_poisson = real(material.bending_poisson);
+
+  // The scales of stretching and bending apply to the friction against the same deformation.
   f.bending_friction =
       real(p.material.yarn_friction * p.material.bend_scale * material.bending_friction);
   f.shear_friction =

@@ -58,6 +58,8 @@ struct FacePass {
                 .velocity = {},
                 .frame = {},
                 .strain = {}};
+
+    // The shape of the face is worked out once for all forces on it.
     for (int a = 0; a < 3; ++a) {
       f.at[a] = point.at[f.v.v[a]];
       f.velocity[a] = point.v[f.v.v[a]];
@@ -65,6 +67,7 @@ struct FacePass {
     f.frame = face_frame(f.at, f.inverse);
     f.strain = green_strain(f.frame);
 
+    // Their shares go into one term, so that the rows gather each face once.
     FaceTerm t{};
     shares.each([&](const auto& share) { share.add(f, t); });
     term[i] = t;

@@ -1,5 +1,5 @@
-// What a force on the cloth consists of. sim/mechanics/forces.h has the list of all forces and says
-// how to add one.
+// The parts that a force on the cloth consists of. sim/mechanics/forces.h has the list of all
+// forces and says how to add one.
 #pragma once
 
 #include "sim/mechanics/face_pass.h"
@@ -60,8 +60,8 @@ struct EnergyContext {
   View<const Vec3r> x;  ///< shape [m] (≥ cloth_vertices)
 };
 
-/// Base of all forces: each part with what a force has that lacks it. A force hides the parts that
-/// it has; which one is called is settled at compile time.
+/// Base of all forces, with a version of each part that does nothing. A force hides the versions of
+/// the parts that it has; the compiler settles which one is called.
 struct Force {
   /// Pattern: whether the force couples vertices that no face couples. Where that changes, the
   /// pattern is built anew.

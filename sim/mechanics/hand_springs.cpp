@@ -23,6 +23,8 @@ struct HandWork {
 double HandSprings::work(const ForceContext& c, View<const Vec3r> dv) const {
   const State& s = c.state;
   if (!s.has_springs) return 0;
+
+  // The work is that of the force which the solve applied, damping included.
   return reduce("implicit.hand_work", c.mesh.cloth_vertices, 0.0,
                 HandWork{.stiffness = s.spring_stiffness.view(),
                          .mass = s.mass.view(),

@@ -116,6 +116,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   const ImplicitParameters& p = step.parameters.implicit;
   dv_.resize(step.mesh.cloth_vertices + kPadding);
   dv_.fill(Vec3r{});
+
+  // The time rule and the motion without forces are where the solve starts from.
   rule_ = time_rule(p.integrator, static_cast<double>(step.dt), step.state.past.dt);
   assembly_.begin_substep(step);
   move_freely(step);
@@ -144,6 +146,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
                      .free_motion = free_motion,
                      .h = rule_.h},
                     dv_.view(), iteration > 1);
+
+    // The candidate shows how much tension the linearisation left out.
     move(step);
     linearization_error_ = find_linearization_error(context);
     if (!(linearization_error_ > p.newton_tolerance)) break;
@@ -153,6 +157,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
     }
     linearize_at_candidate(context);
   }
+
+  // Work is that of the forces as they were linearised last, since these made the motion.
   outer_work_ = assembly_.work(context, dv_.view());
 }
 
@@ -160,6 +166,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
 void Implicit::move_freely(const SubstepContext& step) {
   const Topology& mesh = step.mesh;
   const State& s = step.state;
+
+  // Cloth goes on with its velocity, and obstacles make the motion that they are given.
   free_motion_.resize(mesh.vertices);
   for_each("implicit.free_motion", mesh.vertices,
            FreeMotion{.x0 = s.x0.view(),
@@ -168,6 +176,8 @@ void Implicit::move_freely(const SubstepContext& step) {
                       .motion = free_motion_.view(),
                       .cloth_vertices = mesh.cloth_vertices,
                       .dt = rule_.h});
+
+  // A rule of two steps replaces the cloth's part by what follows from the step before.
   if (!rule_.remembers()) return;
   free_velocity_.resize(mesh.cloth_vertices);
   for_each("implicit.past", mesh.cloth_vertices,
@@ -228,6 +238,7 @@ void Implicit::finish_substep(State& state) {
     return;
   }
 
+  // A rule of two steps also remembers the motion and the change of the velocity.
   state.past.motion.resize(vertices);
   state.past.change.resize(vertices);
   for_each("implicit.velocities", vertices,

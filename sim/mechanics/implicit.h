@@ -29,12 +29,12 @@ class Implicit {
 
   const Forces& forces() const { return assembly_.forces(); }
 
-  /// Velocities at the end of the substep x0 → x1, and what the next one goes on from.
+  /// Writes the velocities at the end of the substep x0 → x1 and the past that the next one needs.
   void finish_substep(State& state);
 
   /// Largest error of the tension that the last linearisation made [N/m].
   double linearization_error() const { return linearization_error_; }
-  /// What the residual of the last solve is short of the forces, over all free vertices [N].
+  /// Residual of the last solve, summed over all free vertices: force that Δv leaves out [N].
   Vec3d lost_force() const { return contacts_.lost_force(); }
   /// Work on the cloth from x0 to the candidate, of contacts and of the forces that have no
   /// potential [J].
@@ -53,7 +53,8 @@ class Implicit {
   Array<Vec3r> free_motion_;  ///< x1 − x0 with Δv = 0 [m] (vertices), move_freely
   Array<Vec3r>
       free_velocity_;  ///< v', where the rule remembers [m/s] (cloth_vertices), move_freely
-  /// Of the linearisation, from the second iteration [m] (cloth_vertices), linearize_at_candidate.
+  /// Shape and predicted motion of the linearisation, from the second iteration on [m]
+  /// (cloth_vertices), linearize_at_candidate.
   Array<Vec3r> at_, predicted_;
   double linearization_error_ = 0;
   double outer_work_ = 0;  ///< of the forces [J], integrate

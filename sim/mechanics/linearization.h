@@ -1,4 +1,4 @@
-// Where an iteration of the implicit step linearises the forces on the cloth.
+// The shape at which an iteration of the implicit step linearises the forces on the cloth.
 #pragma once
 
 #include "sim/state/state.h"
@@ -24,7 +24,7 @@ struct Linearization {
   }
 };
 
-/// What a force may read when the system is assembled and when its work is added up.
+/// The data that a force may read when the system is assembled and when its work is added up.
 struct ForceContext {
   const Topology& mesh;
   const Parameters& parameters;

@@ -30,6 +30,7 @@ Pattern PatternBuilder::finish(Index rows) {
   }
   close_rows_before(rows);
 
+  // Each kind of element gets the list of its blocks that add to every stored one.
   for (std::size_t k = 0; k < kinds; ++k) {
     kinds_[k]->first.upload(first[k]);
     kinds_[k]->number.upload(numbers[k]);

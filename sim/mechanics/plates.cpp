@@ -80,7 +80,7 @@ Matrix inverse(const Matrix& m) {
 }
 
 /// W with the smallest H:H among the curvatures H that give the angles of the hinges that exist.
-/// Where all three exist it is the inverse of m.
+/// When all three exist, it is the inverse of m.
 Matrix curvature_from_angles(const Matrix& m, const std::array<Index, 3>& hinge) {
   constexpr double kInverseWeight[3] = {1, 1, 0.5};  // H:H = H_uu² + H_vv² + 2 H_uv²
 

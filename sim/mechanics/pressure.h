@@ -15,11 +15,13 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Which way out is: 1 for the cloth faces of a closed surface with outward normals, −1 for those
-/// of one with inward normals, 0 for faces of open surfaces. A surface, connected over edges, is
-/// closed where two faces meet at each edge and run along it in opposite directions.
+/// Returns 1 for the cloth faces of a closed surface with outward normals, −1 for those of one with
+/// inward normals, and 0 for faces of open surfaces. A surface, connected over edges, is closed
+/// when two faces meet at each edge and run along it in opposite directions.
 inline std::vector<Real> outward_sides(const World& world) {
   const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+
+  // A surface is a set of faces, and the sets are united edge by edge below.
   std::vector<Index> parent(at(world.cloth_faces));
   std::iota(parent.begin(), parent.end(), Index{0});
   const auto surface_of = [&](Index f) {
@@ -60,6 +62,7 @@ inline std::vector<Real> outward_sides(const World& world) {
     volume[at(surface_of(f))] += dot(a, cross(b, world.position[at(t[2])]));
     if (open[at(f)]) surface_open[at(surface_of(f))] = true;
   }
+
   std::vector<Real> outward;
   for (Index f = 0; f < world.cloth_faces; ++f) {
     const std::size_t surface = at(surface_of(f));
