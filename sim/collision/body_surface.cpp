@@ -52,8 +52,8 @@ bool boxes_apart(const FaceCorners& s, const FaceCorners& t) {
   return false;
 }
 
-/// What a face adds to the normal of its nearest point: at a corner its angle there counts, so that
-/// the sum tells the two sides apart (Bærentzen and Aanæs 2005).
+/// The share of a face in the normal at its nearest point. At a corner the angle of the face is its
+/// weight, so that the sum separates inside from outside there (Bærentzen and Aanæs 2005).
 Vec3d normal_share(const FaceCorners& t, const TrianglePoint<double>& q) {
   double weight = 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ Vec3d normal_share(const FaceCorners& t, const TrianglePoint<double>& q) {
   return weight * direction(area_vector(t));
 }
 
-/// Where the segment a b goes through the triangle; the weights of its corners.
+/// Barycentric weights of the point at which the segment a b goes through the triangle, if it does.
 std::optional<std::array<double, 3>> pierced(const FaceCorners& t, Vec3d a, Vec3d b) {
   const Vec3d n = area_vector(t);
   const double from = dot(a - t[0], n), to = dot(b - t[0], n), nn = dot(n, n);
@@ -106,6 +106,8 @@ void BodySurface::link_edges() {
       const Index a = t[k], b = t[(k + 1) % 3];
       const std::array<Index, 2> ends{std::min(a, b), std::max(a, b)};
       const auto [place, is_new] = known.try_emplace(ends, edges_.size());
+
+      // Of three or more faces at an edge the first one and the last one are kept.
       if (is_new)
         edges_.push_back({ends, {f, -1}});
       else
@@ -153,8 +155,10 @@ SurfacePoint BodySurface::nearest(std::span<const Vec3d> x, Vec3d p, int side) c
     place = q.w[0] * t[0] + q.w[1] * t[1] + q.w[2] * t[2];
   }
 
+  // A point in front of its nearest face is outside, one behind it inside.
   found.normal = direction(static_cast<double>(side) * sum);
   const bool behind = dot(p - place, found.normal) < 0;
+
   // Parts of one body that overlap hide each other's surface: the winding number knows.
   const bool inside = own_side_ != 0 ? std::fabs(winding(x, p)) > 0.5 : behind;
   if (inside != behind) found.normal = {};

@@ -20,7 +20,7 @@ struct SurfacePoint {
   Vec3d normal;               ///< unit, outwards; zero where parts of the body overlap and hide it
 };
 
-/// Where an edge of the body goes through a cloth face.
+/// The point at which an edge of the body goes through a cloth face.
 struct SurfaceCrossing {
   Index vertex = 0;           ///< end of the edge that is nearer
   std::array<double, 3> w{};  ///< weights of the corners of the cloth face
@@ -31,8 +31,8 @@ class BodySurface {
  public:
   BodySurface(const World& world, Index object);
 
-  /// Side of the normals that is outside, for a body without boundary: from its volume.
-  /// 0: the surface is open, and where outside is has to be told.
+  /// Returns +1 when the normals of a closed body point outwards and −1 when they point inwards, by
+  /// the sign of its volume. Returns 0 for an open surface, whose outside the caller has to choose.
   int own_side() const { return own_side_; }
 
   /// `x`: positions of all vertices; `side`: +1 when normals point outwards, −1 when inwards.
@@ -53,7 +53,7 @@ class BodySurface {
 
   std::array<Vec3d, 3> corners(std::span<const Vec3d> x, Index face) const;
   void link_edges();
-  /// How often the surface winds around p: 0 outside, ±1 inside a body without boundary.
+  /// Number of times that the surface winds around p: 0 outside, ±1 inside a closed body.
   double winding(std::span<const Vec3d> x, Vec3d p) const;
 
   const World* world_;

@@ -102,7 +102,7 @@ Collisions detect_collisions(std::span<const Vec3d> start, std::span<const Vec3d
   broad_phase.cover_candidate(step);
   collisions.ms_broad_phase = milliseconds_since(clock);
 
-  // The elementary tests decide; an edge pair is told by its four vertices.
+  // The elementary tests decide. The caller knows no edge numbers, so vertices name an edge pair.
   clock = std::chrono::steady_clock::now();
   Ccd ccd;
   ccd.find(step, broad_phase, {}, false);

@@ -183,6 +183,8 @@ void ImpactZones::order_by_zone(const SubstepContext& step) {
   new_slot_.resize(active);
   constraints_.resize(n);
   zone_slots_.resize(n);
+
+  // The solver of a zone then reads one range of each array.
   for_each("impact_zones.load", active,
            LoadVertices{.order = vertex_order_.view(),
                         .old_active = unsorted_active_.view(),
@@ -203,6 +205,7 @@ void ImpactZones::order_by_zone(const SubstepContext& step) {
                            .constraints = constraints_.view(),
                            .zone_slots = zone_slots_.view(),
                            .multiplier = multiplier_.view()});
+
   incidence_.build(zone_slots_.view(), active);
 }
 
@@ -236,6 +239,8 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
                               .rho = static_cast<Real>(p.rho),
                               .step_threshold = static_cast<Real>(p.step_threshold),
                               .chebyshev = p.chebyshev};
+
+  // Each zone works on its own ranges of these arrays.
   const ZoneArrays arrays{.constraints = constraints_.view(),
                           .constraint_first = constraint_first_.view(),
                           .vertex_first = vertex_first_.view(),
@@ -253,6 +258,7 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
                           .scratch1 = scratch1_.view(),
                           .scratch2 = scratch2_.view(),
                           .result = results_.view()};
+
   switch (p.solver) {
     case ZoneSolver::augmented_lagrangian:
       solve_zones(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
@@ -274,8 +280,12 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
 
 void ImpactZones::store(SubstepContext& step) {
   State& s = step.state;
+
+  // The substep is refused when the largest correction is too large.
   largest_correction_ = reduce("impact_zones.correction", active_.size(), Real(0),
                                Correction{x_.view(), target_.view()}, Max{});
+
+  // Vertices that moved are dirty: the next round tests their pairs again.
   dirty_.resize(step.mesh.cloth_vertices);
   dirty_.fill(0);
   for_each("impact_zones.store", active_.size(),
@@ -287,6 +297,8 @@ void ImpactZones::store(SubstepContext& step) {
                          .kept = kept_.view(),
                          .x1 = s.x1.view(),
                          .dirty = dirty_.view()});
+
+  // Multipliers are kept for the next round, which starts from them.
   for_each("impact_zones.store", constraints_.size(),
            StoreConstraints{kept_of_.view(), multiplier_.view(), shortfall_.view(), step.offset(),
                             kept_.view()});
@@ -303,11 +315,14 @@ void ImpactZones::drop_idle() {
 void ImpactZones::report(SubstepContext& step, Index dynamic_faces) const {
   StepReport& report = step.report;
   const Index zones = results_.size();
+
+  // The report keeps the worst numbers of all rounds and substeps of a step.
   report.dynamic_faces = dynamic_faces;
   report.zones = std::max<std::int64_t>(report.zones, zones);
   report.largest_zone = std::max<std::int64_t>(
       report.largest_zone,
       reduce("impact_zones.largest", zones, Index{0}, LargestZone{vertex_first_.view()}, Max{}));
+
   const ZoneResult worst = reduce("impact_zones.residuals", zones, ZoneResult{0, 0, 0, 0},
                                   ZoneResultAt{results_.view()}, WorseResult{});
   const auto larger = [](double& value, Real other) {

@@ -20,13 +20,13 @@ class ImpactZones {
   /// Adds this round's impacts, solves all zones and writes state.x1 and dirty().
   void solve(SubstepContext& step, const Array<Impact>& impacts);
 
-  /// x1 as the implicit step left it.
+  /// Sets x1 to the result of the implicit step.
   void back_to_candidate(SubstepContext& step);
   /// Sets every vertex of a colliding pair back to where it was at the start; writes dirty(). False
   /// when all of them were there already.
   bool roll_back(SubstepContext& step, const Array<Impact>& impacts);
 
-  /// Whether x1 may be another than the implicit step left it.
+  /// Whether x1 may differ from the result of the implicit step.
   bool corrected() const { return corrected_; }
   /// Largest |x1 − x*| of the last solve [m].
   Real largest_correction() const { return largest_correction_; }
@@ -55,7 +55,7 @@ class ImpactZones {
   Array<Index> unsorted_active_;     ///< free vertices with a constraint, label_zones
   Array<Index> slot_of_;             ///< place there of a vertex (cloth_vertices), label_zones
   Array<Index> label_, next_label_;  ///< smallest slot of the zone (active), label_zones
-  Array<Index> constraint_label_;    ///< likewise (constraints), label_zones
+  Array<Index> constraint_label_;    ///< smallest slot of the zone (constraints), label_zones
 
   Array<Index> vertex_order_, new_slot_;          ///< slots by zone and back, order_by_zone
   Array<Index> kept_of_;                          ///< kept_ index of each constraint by zone

@@ -1,4 +1,4 @@
-// What the stages ask about cloth vertices that are let go from a body (sim/collision/pinch.h).
+// The stages look up here which cloth vertices are let go from a body (sim/collision/pinch.h).
 #pragma once
 
 #include "kernels/parallel/partition_point.h"
@@ -18,7 +18,7 @@ struct LetGoView {
     return k < list.size() && list[k].vertex == vertex && list[k].body == body;
   }
 
-  /// True for a pair of cloth and body of whose cloth vertices one was let go.
+  /// True for a pair of cloth and body when one of its cloth vertices is let go from that body.
   ICLOTH_HD bool ignores(const Index v[4]) const {
     if (list.size() == 0) return false;
     Index body = -1;

@@ -138,6 +138,7 @@ bool Pinch::widen(List& list, const Squeeze& squeeze, const std::vector<Vec3d>& 
 }
 
 bool Pinch::release(SubstepContext& step, const Array<Impact>& impacts) {
+  // Distances are those at the start of the substep, where nothing intersects.
   const std::vector<Vec3d> x = doubles(step.state.x0);
   const double reach =
       std::max(4 * static_cast<double>(step.thickness()), 0.5 * world_->median_edge);
@@ -145,7 +146,7 @@ bool Pinch::release(SubstepContext& step, const Array<Impact>& impacts) {
   List list = held;
   std::vector<Squeeze> alone;
 
-  // Of the bodies on both sides of the cloth the last one of the scene lets go.
+  // Cloth between two bodies is let go from the one that comes later in the scene.
   for (const Impact& impact : impacts.download()) {
     const std::optional<Squeeze> squeeze = squeeze_of(impact, x);
     if (!squeeze) continue;
@@ -158,9 +159,10 @@ bool Pinch::release(SubstepContext& step, const Array<Impact>& impacts) {
     for (const Index v : squeeze->cloth) let_go(list, v, body, x);
   }
 
-  // Where one body alone is left, what is let go already is not wide enough.
+  // If no cloth is between two bodies any more, too few vertices around the impacts are let go.
   if (list.size() == held.size())
     for (const Squeeze& squeeze : alone) widen(list, squeeze, x);
+
   if (list.size() == held.size()) return false;
   write(step.state, list);
   return true;
@@ -195,6 +197,7 @@ void Pinch::take_back(State& state, const Parameters& parameters) {
 }
 
 const Array<Contact>& Pinch::push_outs(const SubstepContext& step) {
+  // Without let-go vertices, which is the usual case, nothing is downloaded.
   push_outs_.resize(0);
   if (step.state.let_go.empty()) return push_outs_;
   const std::vector<Vec3d> x = doubles(step.state.x0);
@@ -230,6 +233,7 @@ const Array<Contact>& Pinch::push_outs(const SubstepContext& step) {
                                   world_->face_area[at(f)] / 3, h));
     }
   }
+
   push_outs_.upload(contacts);
   return push_outs_;
 }

@@ -27,8 +27,8 @@ class Pinch {
   /// `world` must outlive it.
   explicit Pinch(const World& world) : world_(&world) {}
 
-  /// Lets go where the impacts left (x0 → x1, cloth rolled back to x0) are between bodies. False
-  /// when nothing more can be let go: then bodies are not what takes the room.
+  /// Lets cloth go from a body where the impacts left (x0 → x1, cloth rolled back to x0) are
+  /// between bodies. False when nothing more can be let go, as other cloth takes the room then.
   bool release(SubstepContext& step, const Array<Impact>& impacts);
   /// Lets go of every cloth vertex of these impacts, whatever else is there.
   void release_all(State& state, const Array<Impact>& impacts);
@@ -55,7 +55,8 @@ class Pinch {
   const std::vector<Index>& faces_of(Index vertex);
   std::array<Vec3d, 3> corners(const std::vector<Vec3d>& x, Index face) const;
   std::optional<Squeeze> squeeze_of(const Impact& impact, const std::vector<Vec3d>& x) const;
-  /// Bodies that leave no room on the other side of the cloth, the hit one again where it is.
+  /// Bodies that leave no room on the other side of the cloth. The body that was hit is among them
+  /// when another part of it is there.
   std::vector<Index> bodies_ahead(const Squeeze& squeeze, const std::vector<Vec3d>& x, double reach,
                                   const List& held);
   void let_go(List& list, Index vertex, Index body, const std::vector<Vec3d>& x);

@@ -11,7 +11,7 @@ namespace {
 /// metre of cloth of 200 g/m² that hangs down from it [N/m].
 constexpr double kLineLoad = 1;
 
-/// What both kinds of pair need to know; the part that does not depend on the kind.
+/// The data and the part of the search that vertex–face and edge–edge pairs share.
 struct ContactMaker {
   View<const Vec3r> x, v, rest;
   View<const Real> inverse_mass;
@@ -57,6 +57,8 @@ struct ContactMaker {
         const Real c = coordinate(q[k], axis);
         low_q = std::fmin(low_q, c), high_q = std::fmax(high_q, c);
       }
+
+      // The boxes are apart when they are apart along one axis.
       if (low_p > high_q + reach || low_q > high_p + reach) return true;
     }
     return false;
@@ -76,11 +78,16 @@ struct ContactMaker {
     c.gap = norm(g);
     if (!(c.gap < reach) || c.gap <= 0) return false;
     c.normal = (Real(1) / c.gap) * g;
+
+    // The gap vector of a small gap only decides the side on which the perpendicular points.
     const Real length = norm(across), along = dot(across, c.normal);
     if (std::fabs(along) > Real(0.9) * length) {
       c.normal = (along > 0 ? 1 / length : -1 / length) * across;
       c.gap = dot(c.normal, g);
     }
+
+    // The motion that is foreseen includes the fall of free vertices. Pairs that cannot move are
+    // left out.
     Vec3r relative{};
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) {
@@ -90,9 +97,11 @@ struct ContactMaker {
       mobility += c.s.w[a] * c.s.w[a] * inverse_mass[i];
     }
     if (!(mobility > 0)) return false;
+
     // Pairs a little further apart are kept too: elastic forces may bring them together.
     if (!(c.gap + dt * dot(c.normal, relative) < thickness + slack)) return false;
-    // Near in the rest shape too: neighbours in the fabric, not layers that meet.
+
+    // Elements that are near in the rest shape too are neighbours in the fabric, not layers.
     const Index part = object[c.s.v[0]];
     bool same_cloth = true, touches_obstacle = false;
     for (int a = 0; a < 4; ++a) {
@@ -101,6 +110,7 @@ struct ContactMaker {
     }
     if (same_cloth && !touches_obstacle && norm2(apply(c.s, rest)) < 4 * thickness * thickness)
       return false;
+
     c.thickness = thickness;
     c.held = Vec3r{};
     c.stuck = 0;
@@ -123,6 +133,8 @@ struct FindVertexFace {
     const auto closest =
         closest_point_triangle(maker.x[pair.a], maker.x[f.v[0]], maker.x[f.v[1]], maker.x[f.v[2]]);
     if (!closest.interior) return;
+
+    // The weights give the gap vector from the face to the vertex.
     Contact c;
     c.key = pair_key(false, pair);
     c.s = {{pair.a, f.v[0], f.v[1], f.v[2]},
@@ -148,6 +160,8 @@ struct FindEdgeEdge {
     const auto closest =
         closest_points_segments(maker.x[p.v[0]], maker.x[p.v[1]], maker.x[q.v[0]], maker.x[q.v[1]]);
     if (!closest.interior) return;
+
+    // The weights give the gap vector from the first edge to the second one.
     Contact c;
     c.key = pair_key(true, pair);
     c.s = {{p.v[0], p.v[1], q.v[0], q.v[1]},
@@ -158,7 +172,8 @@ struct FindEdgeEdge {
     const Vec3r along_p = maker.x[p.v[1]] - maker.x[p.v[0]];
     const Vec3r along_q = maker.x[q.v[1]] - maker.x[q.v[0]];
     const Vec3r across = cross(along_p, along_q);
-    // Nearly parallel edges do not say where across is.
+
+    // Nearly parallel edges leave the common perpendicular undetermined.
     const bool parallel = norm2(across) < Real(1e-2) * norm2(along_p) * norm2(along_q);
     if (maker.make(c, parallel ? Vec3r{} : across)) emit(c);
   }
@@ -319,6 +334,8 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const 
                            .own_friction = mesh.object_friction.view(),
                            .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness)),
                            .let_go = let_go};
+
+  // Pairs of a vertex and a face come before pairs of edges, each kind in the order of the keys.
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
@@ -332,10 +349,13 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const 
           FindEdgeEdge{maker, ee.view(), mesh.edge.view(), mesh.edge_area.view()}, found_);
   append_sorted_("proximity.sort", found_, contacts_);
 
+  // Friction goes on where the last step left it, and layers that start very close are pushed apart
+  // little by little.
   recall_friction(s);
   if (step.time == 0) note_start_gaps(step);
   if (step.time >= kRampTime) step.state.start_gap.resize(0);
   if (!s.start_gap.empty()) ramp_thickness(step);
+
   step.report.proximity_pairs = contacts_.size();
   step.report.min_gap = static_cast<double>(
       reduce("proximity.min_gap", contacts_.size(), h, GapOf{contacts_.view()}, Min{}));
