@@ -84,7 +84,7 @@ class Growth {
       Index& mine = result_.group[at(i)];
       if (members_[at(mine)] > small) continue;
 
-      // Of all neighbouring groups the one with the fewest members takes the node.
+      // The node joins the neighbouring group with the fewest members, which evens out the sizes.
       Index best = kNone;
       for_neighbours(graph_, i, [&](Index j) {
         const Index other = result_.group[at(j)];

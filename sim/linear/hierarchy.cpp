@@ -33,6 +33,9 @@ struct CoarseBlocks {
     Mat3r sum{};
     for (Index s = source_first[block]; s < source_first[block + 1]; ++s) {
       const Index from = source[s].block;
+
+      // Prescribed vertices take no part. Blocks below the diagonal are not stored, and come
+      // transposed from above it.
       if (!(live[row[from]] > 0) || !(live[column[from]] > 0)) continue;
       const Real* m = entries + 9 * static_cast<std::ptrdiff_t>(from);
       if (source[s].transposed == 0)
@@ -40,6 +43,7 @@ struct CoarseBlocks {
       else
         for (int e = 0; e < 9; ++e) sum.m[e] += m[3 * (e % 3) + e / 3];
     }
+
     value[block] = (1 / kOverestimate) * sum;
   }
 };
@@ -310,6 +314,7 @@ void Hierarchy::fill_contacts(const SystemView& system) {
                             .lumped = lumped_.view(),
                             .smoother = smoother_.view()});
 
+  // Each coarser level takes its numbers from the level before.
   for (int l = 1; l < levels_; ++l)
     for_each("implicit.coarse_nodes", level_[l].count,
              FinishLevel{.child_first = child_first_.view(),
@@ -329,6 +334,7 @@ Multilevel Hierarchy::view(const SystemView& system, View<const Mat3r> inverse_d
   m.inverse_mass = system.inverse_mass;
   m.group = group_.view();
 
+  // Residuals are summed up over the children of a node, corrections are taken from its parent.
   m.child_first = child_first_.view();
   m.child = child_.view();
   m.parent = parent_.view();

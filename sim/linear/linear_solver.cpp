@@ -237,7 +237,7 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
     coarse = finish();
     coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());
 
-    // Where rounding hides the masses in the sums of a level, block-Jacobi gets further.
+    // Rounding can hide the masses in the sums of a level; block-Jacobi gets further then.
     if (!(coarse.residual > kMissed * options.tolerance) ||
         coarse.iterations >= options.max_iterations)
       return coarse;
