@@ -3,6 +3,7 @@
 namespace icloth {
 
 std::string_view parameter_of(Limit limit) {
+  // A user raises a limit by its parameter, so it goes by the name that --set takes.
   switch (limit) {
     case Limit::substep_levels:
       return "step.max_substep_levels";

@@ -195,6 +195,8 @@ std::span<const std::byte> payload_of(std::span<const std::byte> bytes, const st
   const auto require = [&](bool holds, const std::string& what) {
     if (!holds) throw InputError(source + ": " + what);
   };
+
+  // The bytes have to be those of a memory, in the version that this program knows.
   require(bytes.size() >= kHead + kTail, "memory: " + std::to_string(bytes.size()) +
                                              " bytes, expected " + std::to_string(kHead + kTail) +
                                              " or more");
@@ -204,6 +206,7 @@ std::span<const std::byte> payload_of(std::span<const std::byte> bytes, const st
   require(version == kVersion,
           "memory: version " + std::to_string(version) + ", expected " + std::to_string(kVersion));
 
+  // Length and check sum show whether the data were cut off or damaged.
   const std::size_t here = bytes.size() - kHead - kTail;
   const auto length = number_at<std::uint64_t>(bytes, sizeof kMagic + sizeof kVersion);
   require(length == here, "memory: " + std::to_string(here) + " bytes of data, expected " +
@@ -219,6 +222,7 @@ std::span<const std::byte> payload_of(std::span<const std::byte> bytes, const st
 }
 
 void check_count(const MemoryPart& part, std::size_t count, const MemoryShape& shape) {
+  // Most lists have an entry for each element of one kind.
   Index expected = 0;
   switch (part.extent) {
     case Extent::vertices:
@@ -234,6 +238,8 @@ void check_count(const MemoryPart& part, std::size_t count, const MemoryShape& s
     case Extent::any:
       return;
   }
+
+  // A list may be empty where the simulation does without it, as it does without yarn friction.
   if (count == static_cast<std::size_t>(expected) || (count == 0 && part.may_be_empty)) return;
   refuse_shape(std::string(part.name) + ": " + std::to_string(count) + " elements, expected " +
                std::to_string(expected) + (part.may_be_empty ? " or none" : ""));

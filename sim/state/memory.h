@@ -102,7 +102,7 @@ struct MemoryOf {
   /// nothing started closer than that, and once the repulsion has its whole thickness.
   List<Real> start_gap;
 
-  /// Where the candidate pairs of the broad phase can be trusted (vertices); empty: nowhere. The
+  /// Regions in which the broad phase has all candidate pairs (vertices); empty: nowhere. The
   /// pairs in contact depend on it: those just beyond the thickness are in the lists or not.
   List<typename Storage::Box> trusted;
   bool trusted_complete = false;  ///< the lists hold all pairs of the boxes, not the dirty alone
@@ -127,17 +127,24 @@ struct MemoryPart {
 /// holds. This is the only list of it.
 template <class Visit, class... Memory>
 void for_each_part(const Visit& visit, Memory&... m) {
+  // The time, and the positions and velocities that were reached.
   visit(MemoryPart{"step", Extent::single}, m.step...);
   visit(MemoryPart{"time", Extent::single}, m.time...);
   visit(MemoryPart{"x1", Extent::vertices}, m.x1...);
   visit(MemoryPart{"v", Extent::vertices}, m.v...);
+
+  // The friction of contacts, and the last step as integrators of two steps need it.
   visit(MemoryPart{"held", Extent::any}, m.held...);
   visit(MemoryPart{"past.motion", Extent::cloth_vertices, true}, m.past.motion...);
   visit(MemoryPart{"past.change", Extent::cloth_vertices, true}, m.past.change...);
   visit(MemoryPart{"past.dt", Extent::single}, m.past.dt...);
+
+  // The yarns' anchors, and the gaps with which layers started.
   visit(MemoryPart{"yarns", Extent::cloth_faces, true}, m.yarns...);
   visit(MemoryPart{"yarns_bend", Extent::single}, m.yarns_bend...);
   visit(MemoryPart{"start_gap", Extent::cloth_vertices, true}, m.start_gap...);
+
+  // The boxes of the candidate lists, the vertices let go from bodies, and the hands.
   visit(MemoryPart{"trusted", Extent::vertices, true}, m.trusted...);
   visit(MemoryPart{"trusted_complete", Extent::single}, m.trusted_complete...);
   visit(MemoryPart{"let_go", Extent::any}, m.let_go...);

@@ -1,4 +1,4 @@
-// What a step tells about itself. Names are those of the statistics files and the panels.
+// The report of a step. Names are those of the statistics files and the panels.
 #pragma once
 
 #include <array>

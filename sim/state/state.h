@@ -1,4 +1,4 @@
-// What changes during a simulation. Every buffer: meaning [unit] (shape), written by.
+// The data that change during a simulation. Every buffer: meaning [unit] (shape), written by.
 #pragma once
 
 #include "sim/scene/parameters.h"
@@ -8,7 +8,7 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// What a hand does to a vertex.
+/// The spring with which hands pull a vertex.
 struct Spring {
   Index vertex;
   Real stiffness;  ///< [N/m]

@@ -32,7 +32,7 @@ struct Topology {
   /// With material.bending=plate alone.
   Array<PlateRest> plate;         ///< (cloth_faces)
   Array<HingeSlots> hinge_slots;  ///< (hinge_count)
-  /// What Fabric::table points into; empty without material.evaluation=table.
+  /// The samples that Fabric::table points to; empty without material.evaluation=table.
   Array<Stiffness> stiffness_table;
 
   /// Own Coulomb coefficient of each object, −1: none (objects); empty where none has one.
