@@ -21,7 +21,7 @@ struct CudaDevice {
 
 struct CudaSystem {
   int driver = 0;   ///< highest CUDA version the driver knows, 1000 · major + 10 · minor; 0: none
-  int runtime = 0;  ///< CUDA version of this program, likewise; 0: built without CUDA
+  int runtime = 0;  ///< CUDA version of this program, in that form; 0: built without CUDA
   std::string problem;  ///< why there are no devices; empty when there are
   std::vector<CudaDevice> devices;
 };
@@ -35,7 +35,7 @@ int cuda_device_count(std::string* reason = nullptr);
 /// Whether the solver can run on the device; if not, `reason` (may be null) says why in one line.
 bool cuda_device_usable(int ordinal, std::string* reason = nullptr);
 
-/// As the driver names it, of one of the devices that it shows.
+/// The driver's name for one of the devices that it shows.
 std::string cuda_device_name(int ordinal);
 
 /// Bytes a second, read and written together, of copies within the memory of a usable device: best

@@ -15,7 +15,7 @@ Vec3d interpolate(const Triangle& t, Vec3d b, std::span<const Vec3d> field) {
   return b.x * field[at(t[0])] + b.y * field[at(t[1])] + b.z * field[at(t[2])];
 }
 
-/// Where hand `k` holds the cloth, by the corners of all hands.
+/// The point at which hand `k` holds the cloth; `corners` are those of all hands.
 Vec3d hit(std::size_t k, Vec3d b, std::span<const Vec3d> corners) {
   return b.x * corners[3 * k] + b.y * corners[3 * k + 1] + b.z * corners[3 * k + 2];
 }

@@ -32,6 +32,8 @@ void check_resolution(const Scene& scene, const World& world) {
     const auto i = static_cast<std::size_t>(v);
     const double far = norm_max(world.position[i]), resolution = far * 0x1p-23;
     if (resolution <= 0.5 * scene.parameters.impact_zones.offset) continue;
+
+    // The message counts the vertices of the cloth by itself, as its file does.
     const WorldObject& object = world.objects[static_cast<std::size_t>(world.object[i])];
     char text[200];
     std::snprintf(text, sizeof text,
@@ -54,6 +56,8 @@ void check_corners(const World& world) {
     for (std::size_t c = 0; c < 3; ++c) {
       const Index a = face[c], b = face[(c + 1) % 3];
       if (!(at(a) == at(b))) continue;
+
+      // The face is sound in double precision, so the message offers that build.
       const WorldObject& object =
           world.objects[static_cast<std::size_t>(world.object[static_cast<std::size_t>(a)])];
       throw InputError("cloth " + in_quotes(object.name) + ", face " +
@@ -85,16 +89,21 @@ bool build_available(Build build, std::string* reason) {
 }
 
 std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Scene> scene) {
+  // A missing device and an empty scene are refused before the work for the world is done.
   std::string reason;
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + ": " + reason);
   if (scene->cloths.empty())
     throw InputError("scene " + in_quotes(scene->name) + ": no cloths, expected at least one");
   World world = make_world(*scene);
+
+  // Single precision may not tell places apart that differ in the scene.
   if (build != Build::cpu64) {
     check_resolution(*scene, world);
     check_corners(world);
   }
+
+  // Each build has its own namespace, and only that of CUDA has a device to choose.
   switch (build) {
     case Build::cpu32:
       return cpu32::make_solver(std::move(scene), std::move(world), 0);

@@ -146,8 +146,8 @@ void Solver::reserve_memory() {
   reserved_ = memory::reserved();
 }
 
-/// Where a step needed more than that, half as much again is taken, so that it stays a rare event.
-/// The profile notes it.
+/// Takes half as much again when a step needed more than was reserved, so that this stays a rare
+/// event. The profile notes it.
 void Solver::grow_reserve() {
   const std::uint64_t needed = memory::reserved();
   if (needed <= reserved_) return;
@@ -281,7 +281,7 @@ void Solver::report_offending(StepReport& report) const {
   report.no_room = report.finite;
   if (!report.finite) return;
 
-  // Where every pair that is left is with an obstacle, it is the obstacles that leave no room.
+  // The obstacles leave the cloth no room when every pair that is left is with one of them.
   for (const Impact& impact : ccd_.impacts().download()) {
     const Index* v = impact.s.v;
     report.no_room =

@@ -79,7 +79,7 @@ class Solver final : public Simulator {
   /// Device memory that the pool had when it was last looked at [bytes], grow_reserve.
   std::uint64_t reserved_ = 0;
   double free_mass_ = 0;  ///< of the vertices that are not pinned [kg], set_parameters
-  /// Of the state, where it is known [J], step. It follows from memory and parameters.
+  /// Energy of the state where it is known [J], step. It follows from memory and parameters.
   std::optional<double> energy_;
   double work_ = 0;           ///< on the cloth in the step so far [J], accept_substep
   Array<Vec3r> candidate_v_;  ///< velocity without impacts (cloth_vertices), zone_work

@@ -67,6 +67,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 bool Solver::resolve_by_zones(SubstepContext& step) {
   StepReport& report = step.report;
   impact_zones_.begin_substep();
+
+  // Each round solves the zones of the impacts that are left, until none is.
   for (int round = 0;; ++round) {
     find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
@@ -80,6 +82,7 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
     // Constraints are kept over the rounds, so that a correction does not undo those before it.
     ++report.rounds;
     timed(report.ms_impact_zones, [&] { impact_zones_.solve(step, ccd_.impacts()); });
+
     // A correction of more than about an edge would tear the fabric; half the step corrects less.
     const double correction = static_cast<double>(impact_zones_.largest_correction());
     report.finite = std::isfinite(correction);
@@ -90,9 +93,9 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
   }
 }
 
-/// What still collides stays where it was. With resting obstacles this always ends, at the latest
-/// in the state of the start; where nothing is left to put back, moving obstacles squeeze the
-/// cloth.
+/// Puts vertices that still collide back to where they started. With resting obstacles this always
+/// succeeds, at the latest when the whole cloth is back at its start. It fails when moving
+/// obstacles squeeze cloth that is back already.
 bool Solver::resolve_by_rollback(SubstepContext& step) {
   if (!step.report.finite || !parameters_.impact_zones.enabled) return false;
   impact_zones_.back_to_candidate(step);
@@ -110,10 +113,13 @@ bool Solver::resolve_by_rollback(SubstepContext& step) {
   return true;
 }
 
-/// All pairs in the first round; later, unless told otherwise, those with a dirty vertex.
+/// Tests all pairs in the first round, later only those with a dirty vertex if ccd.incremental is
+/// on.
 void Solver::find_impacts(SubstepContext& step, bool first_round) {
   StepReport& report = step.report;
   const bool incremental = !first_round && parameters_.ccd.incremental;
+
+  // A pair without a dirty vertex moves as in the round before, where it was found free of impacts.
   timed(report.ms_broad_phase, [&] {
     if (incremental)
       broad_phase_.cover_dirty(step, impact_zones_.dirty());
@@ -122,6 +128,7 @@ void Solver::find_impacts(SubstepContext& step, bool first_round) {
     else
       broad_phase_.cover_again(step);
   });
+
   timed(report.ms_ccd, [&] {
     ccd_.find(step, broad_phase_, impact_zones_.dirty(), incremental, let_go_view(state_, mesh_));
   });
@@ -189,6 +196,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
       }
     }
 
+    // A refused step leaves the state of its start, whatever its substeps had reached.
     if (report.accepted) {
       report.offending.clear();
       report.no_room = false;
@@ -208,6 +216,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
     grow_reserve();
   });
 
+  // Time that no stage has measured counts as the rest of the step.
   report.time = state_.time;
   report.static_faces = mesh_.faces - report.dynamic_faces;
   report.candidate_pairs = broad_phase_.candidate_count();

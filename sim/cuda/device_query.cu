@@ -1,4 +1,4 @@
-// What sim/cuda_devices.h asks the CUDA runtime.
+// The questions of sim/cuda_devices.h to the CUDA runtime.
 #include <algorithm>
 
 #include "kernels/parallel/device.h"
@@ -76,6 +76,8 @@ CudaDevice describe(int ordinal) {
   device.memory = static_cast<double>(properties.totalGlobalMem);
   device.multiprocessors = properties.multiProcessorCount;
   device.l2_cache = static_cast<double>(properties.l2CacheSize);
+
+  // Only a device that works can be asked for its free memory.
   device.problem = device_problem(ordinal);
   if (device.problem.empty()) device.free_memory = static_cast<double>(free_bytes());
   return device;
@@ -102,12 +104,16 @@ bool is_device_usable(int ordinal, std::string* reason) { return device_usable(r
 double copy_bandwidth(int ordinal) {
   const KeepDevice keep;
   select_device(ordinal);
+
+  // Large buffers and several copies make the caches and the time of a launch negligible.
   constexpr std::size_t kMost = std::size_t{512} << 20;  // well over every second-level cache
   constexpr int kCopies = 8;
   const std::size_t bytes = std::min(kMost, free_bytes() / 4);
   const Buffer from(bytes), to(bytes);
   ICLOTH_CUDA_CHECK("copy bandwidth", cudaMemset(from.get(), 1, bytes));
   Event start, end;
+
+  // The best run counts, since others on the device can only slow a run down.
   double best = 0;
   for (int run = 0; run < 4; ++run) {  // the first one also wakes the device up
     start.record();

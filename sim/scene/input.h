@@ -86,7 +86,7 @@ Recording load_recording(const std::string& path);
 /// Throws InputError naming step and event of the first grab of a face that the scene's cloths do
 /// not have, as in a recording of another scene.
 void check_recording(const Recording& recording, const Scene& scene, const std::string& path);
-/// Written to a temporary beside `path` first, then renamed.
+/// Writes a temporary file beside `path` and renames it.
 void save_recording(const Recording& recording, const std::string& path);
 
 /// Turns a scene's scripted grabs into events, step by step.

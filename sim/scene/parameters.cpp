@@ -54,9 +54,8 @@ constexpr ParameterField field() {
   using Kind = ParameterField::Kind;
   using Type = std::remove_cvref_t<decltype(std::declval<Parameters>().*Group.*Member)>;
 
-  ParameterField f{};
-
   // All values travel as doubles; a choice is the number of its name.
+  ParameterField f{};
   f.get = [](const Parameters& p) { return static_cast<double>(p.*Group.*Member); };
   if constexpr (std::is_enum_v<Type>) {
     f.kind = Kind::choice;

@@ -51,10 +51,10 @@ GridShape parse_grid(JsonValue value, Index triangles);
 /// "funnel": {…}}.
 TriangleMesh parse_body_shape(JsonValue value, Index most_triangles);
 
-/// Refuses a key of the format that this version does not act on.
 /// Coulomb coefficient of an object, from 0 to 2; none where it has no "friction".
 std::optional<double> parse_friction(JsonObject& object);
 
+/// Refuses a key of the format that this version does not act on.
 void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead);
 
 /// Sum of the wanted triangles of all grids; ill-formed entries count as none.
@@ -64,7 +64,7 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
 Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t number);
 ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths);
 CameraPose parse_camera(JsonValue value);
-/// Dotted names or nested groups.
+/// Sets parameters that are given by dotted names or in nested groups.
 void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters);
 
 /// Vertex of a cloth by its number in the file, or by its name on a grid. kNone where no face uses
@@ -74,7 +74,7 @@ Index parse_vertex(JsonValue value, const LoadedCloth& cloth);
 /// Whether a scene file sets a parameter, by its dotted name or in a group; wind also in "wind".
 bool sets_parameter(const nlohmann::json& scene, const std::string& group, const std::string& key);
 
-/// Whole scene. `source` is the name for messages.
+/// Parses a whole scene. `source` is its name in messages.
 Scene parse_scene(const nlohmann::json& json, const std::string& source, const SceneFolder& folder,
                   SceneOrigin& origin);
 
