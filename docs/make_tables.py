@@ -120,7 +120,47 @@ def quick_table(_):
     return [machine, ""] + markdown(head, rows)
 
 
-TABLES = {"quick": quick_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table}
+def recorded(suite):
+    """The results file of a suite."""
+    return json.loads((RESULTS / f"{suite}.json").read_text())
+
+
+def zone_solver_table(_):
+    """`icloth bench paper`: steps from the same tangled states with each solver of impact zones."""
+    rows = [[f"`{row['solver']}`"] + [number(row[key]) for key in ("rounds", "iterations", "ms collisions", "impacts left", "max strain")]
+            for row in recorded("paper")["tables"]["zone_solvers"]]
+    return markdown(["solver", "rounds", "iterations", "ms for collisions", "impacts left", "largest strain"], rows)
+
+
+def preconditioner_table(_):
+    """`icloth bench solver`: one line a state, from the four rows that the suite prints of it."""
+    states = {}
+    for row in recorded("solver")["tables"]["preconditioners"]:
+        states.setdefault((row["scene"], row["step"]), {})[row["what"], row["preconditioner"]] = row
+    rows = []
+    for (scene, step), cells in states.items():
+        first = cells["first solve", "multilevel"]
+        rows.append([scene, str(step), number(first["contacts"]),
+                     number(cells["first solve", "block_jacobi"]["iterations a solve"]),
+                     number(first["iterations a solve"]), number(first["times faster"]),
+                     number(cells["step", "multilevel"]["times faster"])])
+    return markdown(["scene", "step", "contacts", "iterations, block-Jacobi", "iterations, multilevel",
+                     "first solve, times faster", "all solves of the step, times faster"], rows)
+
+
+def drape_table(_):
+    """`icloth bench validation --case drape`: the coefficient of each fabric with two meshes."""
+    drape = next(case for case in recorded("validation")["results"] if case["name"] == "drape")
+    rows = []
+    for figure in drape["figures"]:
+        fabric, _, what = figure["what"].partition(", ")
+        if what.startswith("DC with edges of 2.5 and 5 mm"):
+            rows.append([f"`{fabric}`", f"{figure['reference']:.1f} %", f"{figure['measured']:.1f} %"])
+    return markdown(["fabric", "edges of 2.5 mm", "edges of 5 mm"], rows)
+
+
+TABLES = {"quick": quick_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
+          "zone_solvers": zone_solver_table, "preconditioners": preconditioner_table, "drape": drape_table}
 
 
 def presets_file(accuracy):
