@@ -73,6 +73,7 @@ CLI::App* Commands::add_command(const char* name, const char* what, std::functio
 }
 
 void Commands::add_view() {
+  // Without a display the user learns of the commands that need none.
   const auto action = [this] {
 #if defined(ICLOTH_HAS_WINDOW)
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
@@ -123,6 +124,7 @@ void Commands::add_run() {
 }
 
 void Commands::add_render() {
+  // A program without the renderer still has the command, which says why it cannot draw.
   const auto action = [this] {
 #if defined(ICLOTH_HAS_RENDER)
     return run_render(render);
@@ -145,7 +147,6 @@ void Commands::add_render() {
       ->capture_default_str();
 
   command
-
       ->add_option("--vertices", render.vertices,
                    "how they reach OpenGL: auto, interop (on the GPU, or fail) or host")
       ->check(CLI::IsMember({"auto", "interop", "host"}))
@@ -171,6 +172,7 @@ void Commands::add_bench() {
 }
 
 void Commands::add_tests() {
+  // These commands test parts of the program on files of queries and on meshes.
   CLI::App* ccd = add_command("ccd", "elementary CCD over a file of queries",
                               [this] { return run_ccd(ccd_queries, ccd_predictions); });
   ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();

@@ -110,6 +110,8 @@ std::set<Index> pins_near(const Scene& scene, const std::set<Index>& vertices) {
   std::set<Index> hit, beside;
   std::ranges::set_intersection(vertices, pinned, std::inserter(hit, hit.end()));
   if (!hit.empty() || pinned.empty()) return hit;
+
+  // Otherwise a body may be caught by pins beside the place that it hit.
   Index first = 0;
   for (const Cloth& cloth : scene.cloths) {
     for (const Triangle& t : cloth.mesh.faces)

@@ -19,6 +19,8 @@ constexpr std::size_t kShownPairs = 10;
 /// Tells why a step was refused, and the first of its offending pairs.
 void print_refusal(const HeadlessJob& job, const StepReport& report) {
   const ElementNames names(*job.scene, job.origin.layouts);
+
+  // The reason names what the user can change, as far as the report tells it.
   std::string reason = pins_in_the_way(*job.scene, names, report);
   if (!reason.empty())
     reason += ", ";
@@ -29,13 +31,15 @@ void print_refusal(const HeadlessJob& job, const StepReport& report) {
   std::fprintf(stderr, "icloth: step %lld at %g s was refused: %s%lld impacts left\n",
                static_cast<long long>(report.step), report.time, reason.c_str(),
                static_cast<long long>(report.impacts_left));
+
+  // The first pairs show the place; a tangle may have thousands.
   for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
     std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());
   if (report.offending.size() > kShownPairs)
     std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
 }
 
-/// The clock goes on over a refused step; what that did to the state is told.
+/// Lets the clock go on over a refused step, and says what that did to the state.
 void pass_over(Simulator& simulator) {
   simulator.pass_over();
   std::set<Index> let_go;
@@ -101,7 +105,7 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     const StepReport report = simulator->step(input.events);
     if (job.pass_over && !report.accepted) input.passed_over = true;
 
-    // A refused step is told, and ends the run or is passed over.
+    // A refused step is reported, and ends the run or is passed over.
     if (!report.accepted) {
       progress.finish();
       print_refusal(job, report);

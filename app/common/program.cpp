@@ -17,7 +17,7 @@ int fail(int code, const std::string& what) {
   return code;
 }
 
-/// What was printed may still wait in a buffer for a disk that is full.
+/// Output that was printed may still wait in a buffer for a disk that is full.
 void check_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout))
     throw InputError(std::string("standard output: cannot be written (") + std::strerror(errno) +

@@ -26,6 +26,8 @@ InputEvent release_of(int handle) {
 std::string failure_sentence(const StepReport& report, const Scene* scene) {
   char text[640];
   const std::string pins = scene ? pins_in_the_way(*scene, ElementNames(*scene), report) : "";
+
+  // Each reason has a remedy of its own, with which its sentence ends.
   if (!report.finite) {
     std::snprintf(text, sizeof text,
                   "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
@@ -151,9 +153,12 @@ void Session::run() {
     for (const Mail& item : mail) {
       guarded([&] { std::visit([this](const auto& content) { handle(content); }, item); });
     }
+
+    // Commands such as reset change the state without a step, and the window shows it at once.
     const bool idle = !playing_ && !single_;
     if (!mail.empty() && idle) publish(true);
     mail.clear();
+
     if (stopping_ || idle) continue;
     if (single_ || Clock::now() >= due_) advance();
   }
@@ -173,6 +178,7 @@ void Session::wait_for_mail(std::vector<Mail>& mail) {
 }
 
 void Session::handle(Command command) {
+  // After a start that intersects, or a solver that stopped, nothing may run any more.
   switch (command) {
     case Command::play:
       if (!playing_) due_ = Clock::now();
@@ -251,10 +257,13 @@ void Session::handle(const InputEvent& event) {
   pending_.push_back(event);
 }
 
-/// What is done to the next step, as it will be recorded. The simulator gets the parameters only
-/// here, as in a replay: what was tried between two steps leaves no trace.
+/// The events and the changes of parameters of the next step, as they will be recorded. The
+/// simulator gets the parameters only here, as in a replay: a value that was tried between two
+/// steps leaves no trace.
 Recording::Step Session::next_step() {
   Recording::Step step;
+
+  // A parameter is recorded when it differs from what the recording has led to.
   for (const ParameterInfo& info : parameter_table()) {
     const double wanted = get_parameter(wanted_parameters_, info);
     if (wanted != get_parameter(recorded_parameters_, info))
@@ -262,6 +271,7 @@ Recording::Step Session::next_step() {
   }
   if (!step.parameters.empty()) simulator_->set_parameters(wanted_parameters_);
 
+  // Scripted events are recorded with the user's, so a replay does not need the script.
   step.events = std::exchange(pending_, {});
   if (script_) {
     for (const InputEvent& event :
@@ -287,6 +297,7 @@ void Session::advance() {
   const Clock::time_point begin = Clock::now();
   Recording::Step step;
   const bool done = guarded([&] {
+    // The snapshot is of the state before the step, to which going back returns.
     history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_});
     step = next_step();
     step_begin_ = begin.time_since_epoch().count();
@@ -305,17 +316,22 @@ void Session::advance() {
 }
 
 void Session::finish(const StepReport& report) {
+  // The speed is that of the last second.
   const Clock::time_point now = Clock::now();
   step_ends_.push_back(now);
   while (step_ends_.size() > 2 && now - step_ends_.front() > std::chrono::seconds(1)) {
     step_ends_.pop_front();
   }
+
+  // The interface takes the reports with its next frame.
   {
     const std::lock_guard lock(mutex_);
     reports_.push_back(report);
     if (reports_.size() > kMaxReports) reports_.pop_front();
   }
+
   failed_ = !report.accepted;
+  // A refused step stops the run, and its reason is shown.
   if (failed_) {
     playing_ = false;
     fail(failure_sentence(report, &simulator_->scene()));
@@ -340,6 +356,7 @@ void Session::go_to(const HistoryEntry& entry) {
   else
     release_scripted_handles();
 
+  // The report of the newest step does not fit the older state.
   report_ = {};
   report_.step = entry.snapshot.step;
   report_.time = entry.snapshot.time;
@@ -359,13 +376,14 @@ void Session::note(const std::string& text) {
   ++notes_;
 }
 
-/// A solver that has lost its device leaves the last positions that it told.
+/// Publishes the positions and handles. After the device is lost, the last positions stay.
 void Session::read_positions(PublishedState& state) {
   const bool told = guarded([&] {
     simulator_->positions_on_device(state.on_device);  // first: the other one waits for the device
     simulator_->positions(told_positions_);
     state.handles = simulator_->handles();
   });
+
   if (!told) {
     if (state.on_device) state.on_device->failure = "the solver stopped";
     state.handles.clear();

@@ -29,12 +29,12 @@ struct SessionOptions {
   std::string refusal;                    ///< why nothing may run (bad start state); empty: may
 };
 
-/// What the interface thread sees.
+/// The state of the session as the interface thread sees it.
 struct PublishedState {
   std::int64_t step = 0;
   double time = 0;  ///< [s]
-  /// All vertices [m]. They go along also where the picture is made from `on_device`: picking,
-  /// handles and the camera work on the host.
+  /// All vertices [m]. They are needed even when the picture is made from `on_device`, since
+  /// picking, handles and the camera work on the host.
   std::vector<Vec3f> positions;
   /// The same on the solver's device; null: it has none. Each slot of the triple buffer has its
   /// own, so the one that is drawn from is not written.
@@ -144,7 +144,7 @@ class Session {
   TripleBuffer<PublishedState> published_;
   std::atomic<Clock::rep> step_begin_{0};  ///< of the step in progress, 0: none
 
-  // Of the solver thread alone.
+  // Only the solver thread uses these.
   bool playing_ = false, stopping_ = false, scripted_ = false, single_ = false;
   std::vector<InputEvent> pending_;  ///< events for the next step
   std::optional<ScriptedInput> script_;

@@ -17,6 +17,8 @@ void add_options(CLI::App& app, BenchOptions& bench) {
   app.add_option("--threads", bench.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
   app.add_flag("--quiet", bench.quiet, "no progress line");
+
+  // These options are for some of the suites only.
   app.add_option("--case", bench.only,
                  "accuracy, stability, validation, solver: only cases whose name holds this");
   app.add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");

@@ -118,8 +118,8 @@ void Drag::change_depth(double notches, const CursorRay& ray) {
   move(ray);
 }
 
-/// Tells the solver a new radius and stiffness. They belong to a grab, so it is told by letting go
-/// and grabbing again.
+/// Gives the solver a new radius and stiffness. They belong to a grab, so the handle is released
+/// and grabbed again.
 void Drag::regrip(Handle& handle) {
   handle.radius = radius_;
   handle.stiffness = stiffness_;

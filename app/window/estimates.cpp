@@ -65,6 +65,8 @@ std::string signed_power(double watts) {
 
 std::vector<Estimate> estimates(const StepReport& report, const Parameters& p) {
   if (!report.accepted) return {};
+
+  // The sentences are shown as tooltips, for readers who do not know the name.
   return {
       {"CG residual", brief_number(report.cg_residual),
        "How much of the right-hand side the linear solves left over, at most."},

@@ -127,6 +127,7 @@ void Viewer::take_state() {
     stages_.cut(state.step);
   }
 
+  // News are numbered, so that each of them is shown once.
   if (state.notes != seen_notes_) {
     seen_notes_ = state.notes;
     tell(state.note);
@@ -253,7 +254,7 @@ void Viewer::take_screenshot() {
                static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
   ui_.paint(width, height, target.framebuffer());
 
-  // A folder that cannot be written is told, not thrown.
+  // The user hears of a folder that cannot be written, and the window stays open.
   const std::string path = free_name("icloth", ".png");
   try {
     write_png(path, read_picture(target));

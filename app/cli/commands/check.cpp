@@ -77,6 +77,8 @@ struct Soup {
 int run_check(const CheckOptions& options) {
   Soup soup;
   for (const std::string& path : options.meshes) soup.add(path, options.meshes.size() > 1);
+
+  // Faces without a common vertex must not touch at all.
   const auto pairs = find_intersections(soup.positions, soup.faces, soup.group);
   for (std::size_t i = 0; i < std::min(pairs.size(), options.list); ++i)
     std::printf("%s\n", soup.names.pair(pairs[i]).c_str());
@@ -87,7 +89,7 @@ int run_check(const CheckOptions& options) {
   std::printf("faces %zu, without area (not tested) %zu, intersecting pairs %zu\n",
               soup.faces.size(), soup.faces_without_area(), pairs.size());
 
-  // Neighbours are told apart, since other programs do not test them.
+  // Neighbouring faces are listed by themselves, since other programs do not test them.
   const auto touches = find_touching_neighbours(soup.positions, soup.faces, soup.group);
   if (touches.empty()) return pairs.empty() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(touches.size(), options.list); ++i)

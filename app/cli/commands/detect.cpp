@@ -67,7 +67,7 @@ int run_detect(const DetectOptions& options) {
   const double ms_read =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - clock).count();
 
-  // Detection itself prints the times of its two stages.
+  // The detection measures its two stages by itself.
   const Collisions found =
       cpu64::detect_collisions(start.mesh.positions, end.mesh.positions, start.mesh.faces);
   if (!options.csv.empty()) write_csv(options.csv, found, start.mesh.faces);

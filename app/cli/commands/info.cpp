@@ -29,7 +29,7 @@ void print_device(const CudaDevice& device) {
     return;
   }
 
-  // The bandwidth is measured. The device's memory may be full; the rest is still worth knowing.
+  // Measuring the bandwidth takes memory of the device.
   double bandwidth = 0;
   try {
     bandwidth = measure_copy_bandwidth(device.ordinal);

@@ -82,6 +82,7 @@ Camera camera_from_file(const std::string& path) {
     throw InputError("--camera " + shown_path(path) + ": cannot be read, expected a JSON file");
   std::ostringstream text;
   text << file.rdbuf();
+
   const auto pose = camera_from_json(text.str());
   if (!pose) {
     throw InputError("--camera " + shown_path(path) +
@@ -187,7 +188,7 @@ int run_render(const RenderOptions& options) {
   frame.view = view;
   const Image image = renderer.picture(frame, camera, size.width, size.height);
 
-  // Where interop was demanded, a picture without it is no success.
+  // A picture without interop is no success when interop was demanded.
   if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
     throw DeviceError("--vertices interop: " + renderer.upload_path());
   write_png(options.out, image);

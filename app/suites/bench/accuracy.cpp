@@ -83,6 +83,7 @@ std::vector<Setting> settings(const TrialScene& scene) {
 
 /// Combinations of the settings that matter most, from which the presets are picked.
 std::vector<Setting> combinations() {
+  // All combinations are run, since one setting's error can hide what another one gains.
   std::vector<Setting> list;
   for (const char* integrator : {"backward_euler", "bdf2"})
     for (const char* dt : {"0.02", "0.01", "0.005"})
@@ -128,6 +129,8 @@ Table table_of(const std::string& scene, const std::vector<Point>& points, doubl
               {"setting", "value", "s a simulated second", "times faster", "CG iterations a step",
                "position [mm]", "energy [%]", "momentum [%]", "covered area [%]", "pressed in [%]",
                "largest strain [%]", "violation [δ]", "penetrations", "front"});
+
+  // A scene need not have every error, and a refused run has no final state to check.
   for (const Point& p : points)
     table.add({p.setting.knob, p.setting.value, format_number(p.trial.seconds, 3),
                format_number(usual / p.trial.seconds, 3), format_number(p.trial.cg_iterations, 3),

@@ -24,9 +24,7 @@ std::vector<Part> parts(const Scene& whole) {
   return {
       {"one sheet: stretching, gravity, collision detection", [](Scene&) {}},
       {"bending", [](Scene& s) { s.parameters.material.bend_scale = 1; }},
-
       {"wind", [](Scene& s) { s.parameters.wind.z = 0.5, s.parameters.wind.air_density = 1; }},
-
       // The body comes in two steps, first at rest and then in motion, and friction with it.
       {"repulsion, without friction", [](Scene& s) { s.parameters.proximity.enabled = true; }},
       {"ball at rest before the sheet",
@@ -87,6 +85,7 @@ void show_parts(Build build, Report& report) {
 
   const std::vector<Part> list = parts(*whole);
   std::vector<RunStatistics> fastest(list.size());
+
   // The parts are measured in turns, so that a slow hour of the machine slows all rows or none.
   for (int round = 0; round < kRounds; ++round) {
     Scene scene = bare(*whole);

@@ -20,6 +20,8 @@ Json describe_cuda() {
   const CudaSystem system = cuda_system();
   for (const CudaDevice& device : system.devices) {
     if (device.ordinal != cuda_device()) continue;
+
+    // Results of one device mean nothing on another, so all that sets it apart is written down.
     json["device"] = device.name;
     json["compute_capability"] = capability_text(device.capability);
     json["memory_bytes"] = device.memory;

@@ -56,7 +56,6 @@ std::shared_ptr<Scene> belt_scene(double left, double right) {
                           : s > kArc ? Vec3d{bend, kArc - s, z}
                                      : Vec3d{-bend * std::cos(angle), bend * std::sin(angle), z};
       positions.push_back(place);
-
       flat.push_back({s, 0, z});
     }
   for (Index j = 0; j < 3; ++j)

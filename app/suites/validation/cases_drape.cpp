@@ -30,7 +30,6 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
     Index first, count;
     double phase;
   };
-
   std::vector<Ring> list;
   for (Index r = 0; r <= rings; ++r) {
     const double radius = kDisc + (r - 0.5) * step;
@@ -69,9 +68,9 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
     }
   }
 
-  cloth.mesh.positions = cloth.rest;
   // Folds begin somewhere, so the specimen is uneven by a tenth of a millimetre, the same on every
   // mesh. The next specimen is turned and lies on its other face.
+  cloth.mesh.positions = cloth.rest;
   const double side = specimen % 2 == 0 ? 1e-4 : -1e-4;
   for (Vec3d& p : cloth.mesh.positions) {
     const double angle = std::atan2(p.z, p.x) + specimen, out = std::hypot(p.x, p.z) - kDisc;

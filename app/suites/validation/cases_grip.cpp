@@ -106,6 +106,8 @@ TriangleMesh open_cylinder(double radius, double width, Index sides, Index cells
       mesh.positions.push_back(
           {radius * std::cos(angle), radius * std::sin(angle), width * (1.0 * j / cells - 0.5)});
     }
+
+  // Each cell of the lattice becomes two triangles that face outwards.
   for (Index j = 0; j < cells; ++j)
     for (Index i = 0; i < sides; ++i) {
       const Index a = j * sides + i, b = j * sides + (i + 1) % sides, c = a + sides, d = b + sides;

@@ -31,8 +31,8 @@ Tip one_free_vertex(const Material& material) {
   tip.cloth.name = "tip";
   tip.cloth.material = material;
   tip.cloth.mesh.positions = {{0, height, 0}, {-edge / 2, 0, 0}, {edge / 2, 0, 0}, {0, -height, 0}};
-
   tip.cloth.mesh.faces = {{1, 2, 0}, {2, 1, 3}};
+
   for (const Triangle& t : tip.cloth.mesh.faces) {
     const auto uv = [&](std::size_t k) {
       const Vec3d p = tip.cloth.mesh.positions[static_cast<std::size_t>(t[k])];
@@ -111,7 +111,6 @@ void errors_of_steps(CaseRun& run, Integrator integrator, double error[3]) {
     auto scene = exact_scene("order in dt");
     scene->parameters.step.time_step = dt;
     scene->parameters.implicit.integrator = integrator;
-
     scene->cloths = {sheet};
     pin_row(scene->cloths[0], strip, 0);
     run.start(scene);

@@ -26,6 +26,8 @@ std::array<double, N> integrate(std::array<double, N> y, int count, const Functi
     for (std::size_t i = 0; i < N; ++i) out[i] += by * k[i];
     return out;
   };
+
+  // Four slopes a step leave an error of fourth order in its length.
   for (int n = 0; n < count; ++n) {
     const double s = n * h;
     const auto k1 = f(s, y), k2 = f(s + h / 2, moved(k1, h / 2));

@@ -16,7 +16,6 @@ void draw_pairs(const PanelContext& context) {
   const auto& offending = context.state.report.offending;
   const std::size_t count = start.empty() ? offending.size() : start.size();
   if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
-
   const ElementNames names(context.scene);
 
   // The list scrolls beyond six rows, and ends after fifty.
@@ -35,7 +34,6 @@ void draw_pairs(const PanelContext& context) {
 /// Draws the remedies, of which an invalid start has none but looking at it.
 void draw_buttons(PanelContext& context) {
   if (ImGui::Button("Show")) context.ui.show_failure = true;
-
   if (!context.start_intersections.empty()) return;
   ImGui::SameLine();
 

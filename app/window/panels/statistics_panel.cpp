@@ -73,6 +73,7 @@ void row(const char* name, const char* format, auto... values) {
 using Count = long long;
 
 void draw_counts(const StepReport& r) {
+  // These counts explain the times of the stages, from the first pairs to the linear solves.
   row("proximity pairs", "%lld", static_cast<Count>(r.proximity_pairs));
   row("candidate pairs", "%lld", static_cast<Count>(r.candidate_pairs));
   row("elementary tests", "%lld", static_cast<Count>(r.elementary_tests));
@@ -87,6 +88,8 @@ void draw_counts(const StepReport& r) {
   row("substeps, retries", "%lld, %lld", static_cast<Count>(r.substeps),
       static_cast<Count>(r.retries));
   row("CG iterations", "%lld", static_cast<Count>(r.cg_iterations));
+
+  // A limit is named by the parameter that raises it.
   for (const std::string_view name : names_of_limits(r.limits))
     row("limit reached", "%.*s", static_cast<int>(name.size()), name.data());
 }

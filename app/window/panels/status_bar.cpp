@@ -74,7 +74,7 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
   draw_penetrations(context);
   char text[64];
 
-  // Squeezed cloth is told as long as there is any.
+  // Squeezed cloth is mentioned for as long as there is any.
   if (context.state.report.pinched > 0) {
     std::snprintf(text, sizeof text, "pinched %lld",
                   static_cast<long long>(context.state.report.pinched));
@@ -86,7 +86,7 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
   }
   item(texts.device.c_str());
 
-  // A step that takes long is told as such, so that the window does not seem to hang.
+  // A step that takes long is announced, so that the window does not seem to hang.
   const double busy = context.session.step_seconds();
   if (busy > kLongStep) {
     std::snprintf(text, sizeof text, "in a step for %.0f s", busy);
