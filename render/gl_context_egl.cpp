@@ -57,6 +57,7 @@ EGLContext create_context(EGLDisplay display) {
   EGLint count = 0;
   if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
     config = EGL_NO_CONFIG_KHR;
+
   const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
                             4,
                             EGL_CONTEXT_MINOR_VERSION,

@@ -74,7 +74,7 @@ void MeshPass::upload_constants() {
                         static_cast<float>(d)});
   }
 
-  // Three material coordinates a face, as neighbours may differ at a seam.
+  // Each face has material coordinates of its own, as neighbours may differ at a seam.
   std::vector<Float2> threads;
   for (const auto& corners : material_coordinates(world_))
     for (const Vec2d at : corners)

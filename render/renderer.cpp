@@ -175,6 +175,7 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   store(block.eye, camera.eye());
   store(block.key, light.key, texel);
   store(block.dome, light.dome, dome ? texel : 0);
+
   // The floor lies a hair lower, so that an obstacle that is the floor wins.
   store(block.ground, {ground - 1e-3 * bounds.radius, bounds.centre.x, bounds.centre.z},
         bounds.radius);

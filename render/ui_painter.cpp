@@ -13,6 +13,8 @@ UiPainter::UiPainter() : program_("ui.vert.glsl", "ui.frag.glsl") {
   glCreateVertexArrays(1, &array_);
   glVertexArrayVertexBuffer(array_, 0, vertices_, 0, sizeof(UiVertex));
   glVertexArrayElementBuffer(array_, indices_);
+
+  // The attributes are the position, the place in the font texture, and the colour.
   for (GLuint attribute : {0u, 1u, 2u}) {
     glEnableVertexArrayAttrib(array_, attribute);
     glVertexArrayAttribBinding(array_, attribute, 0);
