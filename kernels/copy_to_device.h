@@ -16,6 +16,7 @@ namespace icloth::ICLOTH_BUILD {
 /// Errors of the device are never thrown; DevicePositions::failure says them.
 inline void copy_to_device(View<const Vec3<Real>> x, std::unique_ptr<DevicePositions>& slot) {
 #if defined(__CUDACC__)
+  // Only the first copy into a slot makes memory, which later ones use again.
   auto* positions = dynamic_cast<CudaPositions*>(slot.get());
   if (positions == nullptr) {
     auto fresh = std::make_unique<CudaPositions>();

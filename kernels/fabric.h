@@ -101,7 +101,7 @@ struct StiffnessTable {
     const Real place[3] = {(g.uu + Real(0.25)) * Real(kNodes), (g.vv + Real(0.25)) * Real(kNodes),
                            std::fabs(g.uv) * Real(kNodes)};
 
-    // The cell of the strain, and the place within it.
+    // The strain lies in a cell of the grid, at these fractions of its edges.
     int cell[3];
     Real along[3];
     for (int a = 0; a < 3; ++a) {

@@ -64,7 +64,7 @@ ICLOTH_HD inline StrainLimit strain_limit(const Fabric& fabric, Sym2 g) {
   const LimitCurve curve{fabric.limit_stiffness};
   for (int i = 0; i < 2; ++i) t.stress[i] = curve.stress(e[i]), t.tangent[i] = curve.tangent(e[i]);
 
-  // Where both strains are nearly equal the quotient is the slope between them.
+  // When both strains are nearly equal, the slope between them takes the place of the quotient.
   t.shear = 2 * d > Real(1e-3) ? (t.stress[0] - t.stress[1]) / (2 * d)
                                : curve.tangent(Real(0.5) * (e[0] + e[1]));
   return t;

@@ -43,12 +43,16 @@ class DeviceTeam {
     const auto tiles = static_cast<unsigned>((static_cast<std::int64_t>(n) + kTile - 1) / kTile);
     T* const found = reinterpret_cast<T*>(partial_ + half_ * turn_);
     turn_ ^= 1u;
+
+    // A tile has the same result whichever block combines it.
     for (unsigned tile = blockIdx.x; tile < tiles; tile += gridDim.x) {
       const std::int64_t i = static_cast<std::int64_t>(tile) * kTile + me;
       T value = i < n ? op(identity, static_cast<T>(body(static_cast<Index>(i)))) : identity;
       value = detail::combine_in_block(value, op);
       if (me == 0) found[tile] = value;
     }
+
+    // All blocks combine the tiles' results in the same order, so that they agree in every bit.
     barrier();
     T value = identity;
     for (unsigned t = threadIdx.x; t < tiles; t += kTile) value = op(value, found[t]);
@@ -87,6 +91,8 @@ unsigned resident_blocks(const char* name) {
   int device = 0, processors = 0, per_processor = 0;
   ICLOTH_CUDA_CHECK(name, cudaGetDevice(&device));
   if (device == known_device) return blocks;
+
+  // The answer depends on the kernel and the device alone, so the runtime is asked once.
   ICLOTH_CUDA_CHECK(name,
                     cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
   ICLOTH_CUDA_CHECK(name, cudaOccupancyMaxActiveBlocksPerMultiprocessor(
@@ -102,6 +108,8 @@ template <class F>
 void with_device_team(const char* name, Index n, const F& f) {
   const detail::CudaScope scope(name);
   const unsigned tiles = std::max(1u, detail::block_count(n, detail::kThreads));
+
+  // Two buffers take turns, since one may still be read while the next results are written.
   std::size_t half = std::size_t{tiles} * DeviceTeam::kMaxReduceBytes;
   struct Line {
     unsigned char bytes[DeviceTeam::kMaxReduceBytes];
@@ -109,7 +117,10 @@ void with_device_team(const char* name, Index n, const F& f) {
   void* partial = detail::scratch<Line, 5>(static_cast<Index>(2 * tiles)).data();
   F copy = f;
   void* arguments[] = {&copy, &partial, &half};
+
+  // More blocks than the device holds at once would wait for each other without end.
   const unsigned blocks = std::min(tiles, detail::resident_blocks<F>(name));
+
   // CUDA 12 does not take the name of a template in the call.
   void (*const kernel)(F, unsigned char*, std::size_t) = detail::device_team_kernel<F>;
   ICLOTH_CUDA_CHECK(name, cudaLaunchCooperativeKernel(kernel, dim3(blocks), dim3(detail::kThreads),

@@ -1,4 +1,4 @@
-// Where arrays live in the CUDA build: memory of the current device.
+// Memory of arrays in the CUDA build: that of the current device.
 //
 // It comes from the device's pool (cudaMallocAsync): memory that is given back stays there, behind
 // the work that still uses it, and the next array takes it without waiting for the device, which

@@ -89,6 +89,8 @@ __device__ T combine_in_block(T value, const Op& op) {
   T* const shared = reinterpret_cast<T*>(storage);
   const auto me = static_cast<int>(threadIdx.x);
   shared[me] = value;
+
+  // The upper half of the values is folded onto the lower half until one is left.
   for (int half = kThreads / 2; half > 0; half /= 2) {
     __syncthreads();
     if (me < half) shared[me] = op(shared[me], shared[me + half]);
@@ -136,8 +138,8 @@ __global__ void __launch_bounds__(kThreads)
   if (me == 0) *result = value;
 }
 
-/// Where kernels leave numbers for the host: pinned host memory that the device writes into, so
-/// that waiting for the kernel is all it takes. One a host thread.
+/// Pinned host memory in which kernels leave numbers for the host, which only has to wait for the
+/// kernel. Each host thread has one.
 class Mailbox {
  public:
   static constexpr std::size_t kBytes = 64;
@@ -318,12 +320,15 @@ Index compact(const char* name, Index n, const P& keep, Array<Index>& out) {
     return 0;
   }
   out.resize(n);
+
+  // The number of indices comes back through memory that the host reads without a copy.
   const detail::Mailbox& mailbox = detail::Mailbox::mine();
   detail::run_cub(name, [&](void* storage, std::size_t& bytes) {
     return cub::DeviceSelect::If(storage, bytes, thrust::counting_iterator<Index>(0),
                                  out.view().data(), static_cast<Index*>(mailbox.on_device()), n,
                                  keep);
   });
+
   const auto count = mailbox.read<Index>(name);
   out.resize(count);
   return count;

@@ -30,7 +30,7 @@ inline std::uint64_t reserved() {
 }
 
 /// Lets the pool take so many bytes for arrays that are still to come, and keep all it ever took.
-/// Where the device has less than that, arrays take what they need when they need it.
+/// When the device has less than that, arrays take what they need when they need it.
 inline void reserve(std::uint64_t bytes) {
   if (!has_pool()) return;
   std::uint64_t everything = ~std::uint64_t{0};

@@ -99,8 +99,8 @@ class Team {
   std::size_t borrowed_ = 0;
 
 #if defined(__CUDA_ARCH__)
-  /// What the threads pass each other in `combine`. One array for all types: with one for each type
-  /// a solver that reduces several of them would not leave room for what the team borrows.
+  /// Shared memory through which the threads pass values in `combine`. One array serves all types:
+  /// with one for each type, a solver that reduces several of them would leave no room to borrow.
   __device__ static unsigned char* reduce_storage() {
     ICLOTH_SHARED(storage, kThreads * kMaxReduceBytes);
     return storage;
@@ -112,6 +112,8 @@ class Team {
     T* shared = reinterpret_cast<T*>(reduce_storage());
     const int me = static_cast<int>(threadIdx.x);
     shared[me] = value;
+
+    // The upper half of the values is folded onto the lower half until one is left.
     for (int half = kThreads / 2; half > 0; half /= 2) {
       __syncthreads();
       if (me < half) shared[me] = op(shared[me], shared[me + half]);

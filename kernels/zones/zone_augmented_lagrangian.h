@@ -117,6 +117,7 @@ class ZoneAugmentedLagrangian : public ZoneProblem<Team> {
 
   /// The objective at x − step · direction. The shortfalls there are left in trial_.
   ICLOTH_HD ZoneObjective objective(Real step) const {
+    // The sum runs over the constraints first and then over the vertices.
     return team_.reduce(
         nc_ + nv_, ZoneObjective{0, 0},
         [&](Index k) {

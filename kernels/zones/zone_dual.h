@@ -24,6 +24,7 @@ class ZoneDual : public ZoneProblem<Team> {
   /// number of iterations.
   ICLOTH_HD int solve() {
     prepare();
+
     double t = 1;
     int k = 0;
     for (; k < set_.iterations; ++k) {
@@ -47,6 +48,7 @@ class ZoneDual : public ZoneProblem<Team> {
         multiplier_[j] = projected;
       });
     }
+
     positions(multiplier_);
     return k;
   }

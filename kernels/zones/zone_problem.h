@@ -226,6 +226,7 @@ class ZoneProblem {
           return Balance{-1.0 * convert<double>(impulse), 0};
         },
         Sum{});
+
     const double momentum = b.moved > 0 ? norm(b.left) / b.moved : 0;
     return {static_cast<Index>(iterations), r.violation, r.complementarity,
             static_cast<Real>(momentum)};

@@ -205,6 +205,7 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
 
   // One kernel makes the whole solve, and its result is read back.
   const auto iterate = [&](const auto& preconditioner, int max_iterations) {
+    // The loops of the solve go over the vertices or over the couplings.
     with_device_team(
         "implicit.solve", std::max(n, couplings),
         ConjugateGradients<std::decay_t<decltype(preconditioner)>>{.system = system,
