@@ -53,6 +53,8 @@ class BoxTree {
         n = at(node.skip);
         continue;
       }
+
+      // Inner nodes list no boxes. In depth-first order the next node is the first one below.
       for (Index i = node.first; i < node.first + node.count; ++i)
         if (boxes_[at(order_[at(i)])].overlaps(query)) visit_box(order_[at(i)]);
       ++n;

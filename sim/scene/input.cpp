@@ -31,6 +31,9 @@ Json to_json(const InputEvent& event) {
   Json json;
   json["kind"] = kKinds[static_cast<int>(event.kind)];
   json["handle"] = event.handle;
+
+  // Members that say nothing are left out: those of other kinds, and those that the parameters
+  // give.
   if (event.kind == InputEvent::Kind::grab) {
     json["face"] = event.face;
     json["barycentric"] = to_json(event.barycentric);
@@ -214,6 +217,7 @@ Vec3d path_target(const ScriptedGrab& grab, double time) {
 ScriptedInput::ScriptedInput(const Scene& scene)
     : scene_(&scene), held_(scene.input.size()), done_(scene.input.size()) {
   for (const ScriptedGrab& grab : scene.input) {
+    // Faults are found when the scene is loaded, not in the step in which a grab begins.
     InputEvent probe;
     if (grab.cloth < 0 || static_cast<std::size_t>(grab.cloth) >= scene.cloths.size())
       throw InputError("scene '" + scene.name + "': scripted grab of cloth " +

@@ -265,6 +265,7 @@ std::string expected_range(const ParameterInfo& info) {
     for (const std::string_view choice : choices) text += " " + std::string(choice);
     return text;
   }
+
   if (info.field.kind == ParameterInfo::Kind::boolean) return "true or false";
   const char* kind = info.field.kind == ParameterInfo::Kind::whole ? "a whole number" : "a number";
   std::string text =

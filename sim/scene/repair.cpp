@@ -24,7 +24,7 @@ bool add_contours(const RepairMesh& mesh, std::span<const IntersectingFaces> pai
   std::vector<Contour> contours = trace_contours(mesh, pairs);
   std::vector<Side> sides = choose_sides(mesh, contours, limit);
 
-  // What is left of a contour that has a side is no new one.
+  // A contour that shares segments with a known one is a rest of it, and has its side already.
   std::vector<std::pair<Index, Index>> seen;
   for (const SidedContour& old : known)
     for (const Contour::Segment& s : old.contour.segments) seen.emplace_back(s.own, s.other);

@@ -154,6 +154,7 @@ void RepairMesh::turn_faces() {
       }
     }
 
+    // The number of the first face names the part.
     for (const Index f : part_faces)
       for (const Index v : faces[at(f)]) part[at(v)] = static_cast<Index>(seed);
 

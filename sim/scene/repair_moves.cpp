@@ -185,7 +185,7 @@ class Collector {
       if (c.side.sign != 0) reach = std::max(reach, c.side.depth);
     reach = 2 * reach + 3 * offset_;
 
-    // The elements that may move, one ring wider than the regions.
+    // The vertices that may move, with one ring more than the regions have.
     std::vector<std::uint8_t> moving = moving_;
     for (const Triangle& t : mesh_.faces)
       if (std::ranges::any_of(t, [&](Index v) { return moving_[at(v)] != 0; }))
@@ -204,6 +204,9 @@ class Collector {
     const auto moves = [&](const auto& element) {
       return std::ranges::any_of(element, [&](Index v) { return moving[at(v)] != 0; });
     };
+
+    // Vertices that move are held against all faces, and other vertices only against faces that
+    // move.
     for (std::size_t v = 0; v < mesh_.x.size(); ++v)
       if (moving[v])
         faces.visit(vertex_boxes[v].grown(reach),
@@ -337,7 +340,7 @@ double gap_of(const RepairMesh& mesh, const GapConstraint& constraint) {
 
 void move_vertices(RepairMesh& mesh, std::span<const GapConstraint> all, double limit,
                    double tolerance) {
-  // What every constraint misses at the start. Nothing has to move further than the largest of it.
+  // No vertex has to move further than the most that a constraint lacks at the start.
   std::vector<double> all_missing;
   double most = 0;
   for (const GapConstraint& c : all) {
@@ -371,7 +374,7 @@ void move_vertices(RepairMesh& mesh, std::span<const GapConstraint> all, double 
     if (!far) break;
   }
 
-  // Positions as the solver will read them.
+  // The positions are rounded to single precision, as the solver will read them.
   for (std::size_t v = 0; v < mesh.x.size(); ++v) {
     const double length = norm(move[v]);
     if (length > limit) move[v] = (limit / length) * move[v];

@@ -64,7 +64,7 @@ double pair_depth(const RepairMesh& mesh, Index f, Index g, int sign) {
 /// Middles of the parts of edges between two faces that they go through, each with such a face.
 std::vector<std::pair<Vec3d, Index>> between_piercings(const RepairMesh& mesh,
                                                        const Contour& contour) {
-  // Where each edge goes through, along the edge.
+  // The places at which an edge goes through faces are measured along the edge.
   std::map<Index, std::vector<std::pair<double, Index>>> places;
   for (const Piercing& p : contour.piercings) {
     const auto [a, b] = mesh.edges[at(p.edge)];
@@ -122,7 +122,7 @@ Fill fill_regions(const RepairMesh& mesh, const Contour& contour, int sign, doub
     if (!closest.beyond && depth <= limit) fill.depth = std::max(fill.depth, depth);
   }
 
-  // Where no point tells a depth, the faces that cross do.
+  // When no point has a depth, that of the faces which cross is the estimate.
   fill.measured = fill.depth > 0;
   for (const Contour::Segment& s : contour.segments) {
     const double depth = pair_depth(mesh, s.own, s.other, sign);
@@ -177,11 +177,15 @@ void unite_by_regions(const RepairMesh& mesh, const Fills& fills, SignedSets& se
     Index face;
   };
   std::array<std::map<Index, std::vector<Known>>, 2> known;
+
+  // Two places on the other sheet are next to each other when their faces share a vertex.
   const auto touch = [&](Index f, Index g) {
     for (const Index v : mesh.faces[at(f)])
       if (std::ranges::find(mesh.faces[at(g)], v) != mesh.faces[at(g)].end()) return true;
     return false;
   };
+
+  // Wrong vertices are remembered with their contours, by which later contours find them.
   for (std::size_t c = 0; c < fills.size(); ++c)
     for (std::size_t s = 0; s < 2; ++s)
       for (const WrongVertex& wrong : fills[c][s].wrong) {
@@ -203,7 +207,7 @@ void unite_neighbours(const RepairMesh& mesh, std::span<const Contour> contours,
           sets.unite(known.try_emplace({v, w}, c).first->second, c, 1);
 }
 
-/// What an orientation of a set of contours costs: views that are too deep, then volume.
+/// The cost of an orientation of a set of contours. Views that are too deep count before volume.
 struct Cost {
   int forbidden = 0;  ///< views with cloth inside a body
   int too_deep = 0;
@@ -246,7 +250,7 @@ std::vector<Side> choose_sides(const RepairMesh& mesh, std::span<const Contour> 
     }
   }
 
-  // Where nothing was measured, the depth of the other contours of the set is the better estimate.
+  // A contour without a measured depth takes that of the other contours of its set.
   const auto chosen_sign = [&](std::size_t c) {
     const auto [set, sign] = sets.find(c);
     return (costs[set][1] < costs[set][0] ? -1 : 1) * sign;

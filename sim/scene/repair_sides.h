@@ -15,7 +15,7 @@ struct WrongVertex {
   double depth = 0;  ///< how far it has to go back [m]
 };
 
-/// What is decided for one view of a contour.
+/// The side on which one view of a contour belongs.
 struct Side {
   int sign = 0;      ///< +1: this sheet belongs above the other one, −1: below; 0: not decided
   double depth = 0;  ///< the deepest place on the wrong side [m]

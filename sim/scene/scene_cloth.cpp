@@ -38,6 +38,8 @@ WeldChoice parse_weld(const JsonValue& value) {
   constexpr double kSmallestDistance = 1e-9;  // below it nothing but exact doubles is near
   WeldChoice choice;
   choice.asked = true;
+
+  // A truth value switches welding, and a number is its distance.
   if (value.json().is_boolean()) {
     choice.on = value.boolean();
     return choice;
@@ -65,12 +67,14 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
     if (!rest.mesh.uv.empty()) file.mesh.uv = std::move(rest.mesh.uv);
   }
 
+  // Without a rest shape of its own, cloth is at rest as it is in its file.
   cloth.mesh = std::move(file.mesh);
   if (cloth.rest.empty()) cloth.rest = cloth.mesh.positions;
   const std::string file_name = shown_path(name.text());
   check_cloth_mesh(cloth.mesh, file_name);
   check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, file_name + " (rest shape)");
 
+  // Welding precedes the transform, but its distance is one in metres of the scene.
   ClothMeshOptions options;
   options.object = "cloth " + in_quotes(cloth.name);
   options.file = file_name;
@@ -100,6 +104,7 @@ void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   const GridShape shape = parse_grid(mesh.required("grid"), static_cast<Index>(scaled));
   mesh.finish();
 
+  // Keys that change a mesh file make no sense for a grid, which is made as it is wanted.
   for (const char* key : {"rest", "subdivide", "weld"})
     if (object.has(key))
       object[key].refuse("no such key: only for mesh files, a grid is flat at rest");
@@ -135,6 +140,8 @@ void pin_box(const JsonValue& value, const Cloth& cloth, std::vector<bool>& pinn
   const std::vector<JsonValue> corners = value.items();
   if (corners.size() != 2) value.refuse("two corners: [[x, y, z], [x, y, z]]");
   const Vec3d low = corners[0].vector(), high = corners[1].vector();
+
+  // A box that holds no vertex is most likely misplaced.
   bool found = false;
   for (std::size_t v = 0; v < cloth.mesh.positions.size(); ++v) {
     const Vec3d p = cloth.mesh.positions[v];
@@ -172,6 +179,8 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
 double total_grid_triangles(const nlohmann::json& scene) {
   double total = 0;
   if (!scene.is_object() || !scene.contains("cloths")) return 0;
+
+  // Ill-formed entries are left to the parser, whose messages name them.
   for (const auto& cloth : scene["cloths"]) {
     const bool is_grid = cloth.is_object() && cloth.contains("mesh") && cloth["mesh"].is_object() &&
                          cloth["mesh"].contains("grid");

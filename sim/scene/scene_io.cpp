@@ -80,6 +80,7 @@ double median_edge(const Scene& scene) {
         };
         lengths.push_back(norm(at((c + 1) % 3) - at(c)));
       }
+
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::ranges::nth_element(lengths, middle);

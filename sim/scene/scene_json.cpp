@@ -92,6 +92,8 @@ std::vector<PathPoint> parse_path(const JsonValue& value) {
   std::vector<PathPoint> path;
   for (const JsonValue& item : value.items()) {
     const std::vector<double> numbers = item.numbers(4);
+
+    // Times must be so far apart that the speed of the hand is finite.
     if (numbers[0] < 0 || numbers[0] > kMaxTime ||
         (!path.empty() && numbers[0] < path.back().time + kMinInterval))
       item.refuse("[time, x, y, z] with a time after the one before");
@@ -215,6 +217,8 @@ CameraPose parse_camera(JsonValue value) {
   camera.target = object.required("target").vector();
   camera.up = object.vector("up", camera.up);
   camera.fov = object.number("fov", camera.fov, {1, 170});
+
+  // The view direction and the upward direction have to span a plane.
   const Vec3d across = cross(camera.target - camera.eye, camera.up);
   if (!(norm(across) > 0)) value.refuse("eye and target apart, and not along up");
   object.finish();

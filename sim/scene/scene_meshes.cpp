@@ -48,6 +48,8 @@ SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
 SceneFaces scene_faces(const Scene& scene) {
   SceneFaces soup;
   Index first = 0;
+
+  // Vertices are counted through all objects, so faces are shifted by the vertices before them.
   const auto append = [&](const TriangleMesh& mesh, int group) {
     for (const Triangle& t : mesh.faces)
       soup.faces.push_back({t[0] + first, t[1] + first, t[2] + first});

@@ -18,6 +18,8 @@ std::vector<Keyframe> parse_motion(const JsonValue& value) {
   for (const JsonValue& item : value.items()) {
     JsonObject object(item);
     Keyframe key;
+
+    // The order of the keyframes is that of their times, between which the body is interpolated.
     key.time = object.required("time").number({0, 1e6});
     if (!motion.empty() && key.time <= motion.back().time)
       object["time"].refuse("a time after that of the keyframe before");

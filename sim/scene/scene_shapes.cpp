@@ -115,6 +115,8 @@ GridShape parse_grid(JsonValue value, Index triangles) {
 TriangleMesh parse_body_shape(JsonValue value, Index most_triangles) {
   JsonObject object(value);
   if (value.json().size() != 1) value.refuse("one of sphere, capsule, box, plane, funnel");
+
+  // The only key names the shape; finish() refuses any that is not known.
   TriangleMesh mesh;
   if (object.has("sphere")) mesh = parse_round(object["sphere"], false, most_triangles);
   if (object.has("capsule")) mesh = parse_round(object["capsule"], true, most_triangles);
@@ -161,6 +163,8 @@ Placement parse_transform(JsonValue value) {
   Placement place;
   place.translation = object.vector("translate", {});
   if (object.has("rotate")) place.rotation = rotation_matrix(parse_rotation(object["rotate"]));
+
+  // One number scales all axes alike, and three numbers scale each axis by itself.
   if (object.has("scale")) {
     const JsonValue scale = object["scale"];
     const double same = scale.json().is_number() ? scale.number(kSize) : 0;

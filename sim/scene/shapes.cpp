@@ -157,6 +157,7 @@ TriangleMesh make_sphere(double radius, Index triangles) {
       }
     }
   }
+
   for (Vec3d& p : mesh.positions) p = radius * p;
   return mesh;
 }
