@@ -69,6 +69,8 @@ std::optional<std::array<double, 3>> pierced(const FaceCorners& t, Vec3d a, Vec3
   const Vec3d n = area_vector(t);
   const double from = dot(a - t[0], n), to = dot(b - t[0], n), nn = dot(n, n);
   if (!(from * to < 0) || !(nn > 0)) return std::nullopt;
+
+  // The point is inside the triangle when none of its weights is negative.
   const Vec3d p = a + (from / (from - to)) * (b - a);
   std::array<double, 3> w{};
   for (std::size_t k = 0; k < 3; ++k) {

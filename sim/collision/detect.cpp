@@ -58,6 +58,8 @@ Topology make_topology(std::span<const Triangle> faces, Index vertices) {
   for (const Triangle& t : faces) face.push_back({{t[0], t[1], t[2]}});
   mesh.face.upload(face);
   find_edges(mesh.face, mesh.edge);
+
+  // All elements are cloth, so that every pair without a common vertex is tested.
   mesh.vertices = mesh.cloth_vertices = vertices;
   mesh.faces = mesh.cloth_faces = mesh.face.size();
   mesh.edges = mesh.cloth_edges = mesh.edge.size();

@@ -116,6 +116,8 @@ void ImpactZones::merge(const Array<Impact>& impacts) {
   unsorted_.resize(total);
   for_each("impact_zones.merge", total,
            Concatenate{kept_.view(), impacts.view(), unsorted_.view()});
+
+  // A new impact replaces the kept constraint of its pair and goes on from its multiplier.
   sorted_.resize(0);
   append_sorted_("impact_zones.merge", unsorted_, sorted_);
   compact("impact_zones.merge", total, IsNewest{sorted_.view()}, picked_);
@@ -345,6 +347,8 @@ void ImpactZones::back_to_candidate(SubstepContext& step) {
 bool ImpactZones::roll_back(SubstepContext& step, const Array<Impact>& impacts) {
   const Index vertices = step.mesh.cloth_vertices;
   corrected_ = true;
+
+  // A vertex goes back when any of its pairs collides.
   slots_.resize(impacts.size());
   for_each("impact_zones.corners", impacts.size(), ImpactCorners{impacts.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);

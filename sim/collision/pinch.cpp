@@ -127,6 +127,7 @@ void Pinch::let_go(List& list, Index vertex, Index body, const std::vector<Vec3d
 bool Pinch::widen(List& list, const Squeeze& squeeze, const std::vector<Vec3d>& x) {
   const std::size_t before = list.size();
   for (const Index v : squeeze.cloth) {
+    // The bodies are collected first, since the list grows while neighbours are let go.
     std::vector<Index> bodies;
     for (auto it = list.lower_bound({v, 0}); it != list.end() && it->first.first == v; ++it)
       bodies.push_back(it->first.second);

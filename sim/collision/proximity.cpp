@@ -272,6 +272,8 @@ void Proximity::note_start_gaps(SubstepContext& step) {
   for_each("proximity.slots", contacts_.size(), ContactSlots{contacts_.view(), slots.view()});
   Incidence incidence;
   incidence.build(slots.view(), step.mesh.cloth_vertices);
+
+  // A vertex that starts closer than the thickness keeps its gap; often there is none.
   Array<Real>& start_gap = step.state.start_gap;
   start_gap.resize(step.mesh.cloth_vertices);
   const Index close = reduce("proximity.start_gaps", step.mesh.cloth_vertices, Index{0},

@@ -77,6 +77,8 @@ class Decoder {
   Decoder(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
 
   Body decode() {
+    // The answer begins with the length of its head, which holds an error or the counts of the
+    // arrays.
     std::uint64_t length = 0;
     take(&length, sizeof length);
     if (length > rest_.size()) refuse();

@@ -46,6 +46,8 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
                      std::to_string(max_bytes));
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(path, "cannot be opened");
+
+  // The file may have become shorter since its size was asked for.
   std::string contents(size, '\0');
   contents.resize(std::fread(contents.data(), 1, contents.size(), file.get()));
   if (std::ferror(file.get())) fail(path, "cannot be read");

@@ -145,6 +145,8 @@ nlohmann::json parse_json(std::string_view text, const std::string& name) {
     std::string what = error.what();
     const std::size_t bracket = what.find("] ");
     if (bracket != std::string::npos) what.erase(0, bracket + 2);
+
+    // The last word is text of the file, and a message must not repeat all of it.
     constexpr std::string_view kWord = "last read: '";
     if (const std::size_t word = what.find(kWord); word != std::string::npos) {
       const std::size_t begin = word + kWord.size(), end = std::max(what.rfind('\''), begin);

@@ -54,6 +54,8 @@ MeshFile read_mesh(const std::string& path) {
 void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name) {
   constexpr double kFlat = 1e-9;
   if (mesh.faces.empty()) throw InputError(name + ": 0 triangles, expected at least one");
+
+  // The strain of a face without area cannot be measured.
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const Triangle& face = mesh.faces[f];
     const std::string element = name + ": triangle " + std::to_string(f) + ": ";

@@ -101,6 +101,8 @@ class PlyParser {
       Words words(header_line());
       const std::string_view key = words.next();
       if (key == "end_header") break;
+
+      // Lines with other keywords, such as comments, are passed over.
       if (key == "format") parse_format(words.next());
       if (key == "element") add_element(words);
       if (key == "property") add_property(words);
@@ -247,6 +249,8 @@ class PlyParser {
         next_number(property.type, where);
         continue;
       }
+
+      // Lists other than the corners of faces are read and forgotten.
       const bool is_face = element.name == "face" &&
                            (property.name == "vertex_indices" || property.name == "vertex_index");
       const std::size_t count = list_length(property, where);

@@ -287,6 +287,7 @@ bool same_faces(const MeshFile& a, const MeshFile& b) {
                       a.mesh.faces.begin() + static_cast<std::ptrdiff_t>(end),
                       b.mesh.faces.begin() + static_cast<std::ptrdiff_t>(begin));
   };
+
   for (const FilePolygon& p : a.polygons) {
     if (!equal_until(at(p.first_face))) return false;
     begin = at(p.first_face + p.face_count);

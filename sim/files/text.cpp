@@ -171,6 +171,8 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
   word = word.substr(0, kLongestName);  // it may come from a file
   std::string_view best;
   std::size_t smallest = 0;
+
+  // Of names that are equally near the first one wins.
   for (std::string_view candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);
     if (!best.empty() && distance >= smallest) continue;

@@ -38,6 +38,8 @@ class NearPoints {
   bool around(Vec3d place, const Visit& visit) const {
     std::size_t count = 0;
     const Cell centre = cell_of(place);
+
+    // Cells are as large as the distance, so all near points are in this one and those around it.
     for (int k = 0; k < 27; ++k) {
       const auto found =
           cells_.find({centre[0] + k % 3 - 1, centre[1] + k / 3 % 3 - 1, centre[2] + k / 9 - 1});

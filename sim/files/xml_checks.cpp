@@ -15,6 +15,7 @@ constexpr double kMostNodes = 1e6;
 /// Value of an attribute of a start tag, "" where it has none.
 std::string_view attribute(std::string_view tag, std::string_view name) {
   for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    // The name may also be part of a longer one, or of a value.
     const std::size_t equals = tag.find_first_not_of(" \t\r\n", at + name.size());
     const bool is_whole =
         at > 0 && std::string_view(" \t\r\n").find(tag[at - 1]) != std::string_view::npos;

@@ -97,6 +97,8 @@ struct FinishFirstLevel {
         couplings.of_vertex(
             child[c], [&](Index k, Real w) { sum += couplings.list[k].h.scaled(std::fabs(w)); });
     lumped[i] = sum;
+
+    // The smoother works with the diagonal block of the level, contacts included.
     Mat3r block = diagonal[i];
     coupled.of_row(i, [&](Index j, const Mat3r& contacts) {
       if (j == i) block += contacts;

@@ -19,6 +19,8 @@ struct AirWork {
       vs[a] = v[face[i].v[a]];
     }
     const AirForce air = air_force(wind, xs, vs);
+
+    // Prescribed vertices are moved by whatever prescribes them, and not by the air.
     double work = 0;
     for (const Index k : face[i].v) {
       if (inverse_mass[k] > 0) work += dot_double(air.force - air.slope * dv[k], x1[k] - x0[k]);

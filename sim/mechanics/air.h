@@ -32,6 +32,7 @@ ICLOTH_HD inline AirForce air_force(const Wind& wind, const Vec3r xs[3], const V
   const Real twice_area = norm(normal2);
   if (!(twice_area > 0)) return {};
 
+  // The pressure acts along the normal and the drag across it; each corner has a third of both.
   const Real share = twice_area / Real(6);
   const Vec3r n = (Real(1) / twice_area) * normal2;
   const Vec3r relative = wind.velocity - (Real(1) / Real(3)) * (vs[0] + vs[1] + vs[2]);

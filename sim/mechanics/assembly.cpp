@@ -39,6 +39,7 @@ std::optional<Pattern> Assembly::match_pattern(const World& world, const Topolog
   if (coupling_ == coupling) return std::nullopt;
   coupling_ = coupling;
 
+  // Each face couples its corners, and forces add the elements that they have besides.
   PatternBuilder builder;
   builder.begin_elements(face_sources_);
   for (Index f = 0; f < world.cloth_faces; ++f)

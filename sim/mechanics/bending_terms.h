@@ -42,6 +42,8 @@ struct HingeBending {
   ICLOTH_HD void operator()(Index i) const {
     const HingeRest& h = hinge[i];
     const HingeAngle angle = hinge_angle_of(h, point.at);
+
+    // In later iterations the stiffness stays that of the shape at the start.
     const Real start = point.moved() ? hinge_angle_of(h, point.start).theta : angle.theta;
     const Real k = hinge_stiffness(fabric[h.fabric0], fabric[h.fabric1], h, start);
     const Real damping = hinge_damping(h, fabric, extra_damping);
@@ -146,6 +148,7 @@ struct PlatePass {
       for (int b = 0; b < 4; ++b)
         end[a] += dot(hinge_term[h].gradient[b], point.predicted[hinge[h].v.v[b]]);
     }
+
     return friction.law(i, cloth, plate_curvature(plate[i], at), plate_curvature(plate[i], end),
                         point.moved());
   }

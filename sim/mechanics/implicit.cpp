@@ -98,6 +98,8 @@ struct LinearizationError {
       start[a] = point.start[v];
       motion[a] = point.predicted[v] + point.dt * dv[v];
     }
+
+    // The stiffness is the one that the linearisation used.
     const Stiffness k =
         stiffness_at(fabric[face_fabric[i]], green_strain(face_frame(start, inverse[i].m)));
     const FaceFrame change = face_frame(motion, inverse[i].m);

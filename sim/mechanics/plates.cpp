@@ -38,6 +38,8 @@ FlatEdge flat_edge(const std::array<Vec2d, 3>& p, std::size_t corner) {
   e.length = std::hypot(b.x - a.x, b.y - a.y);
   e.direction = (1 / e.length) * (b - a);
   e.outward = {e.direction.y, -e.direction.x};
+
+  // The third corner gives the height of the face and tells which side is outward.
   const Vec2d d = c - a;
   e.own.along = d.x * e.direction.x + d.y * e.direction.y;
   const double off = d.x * e.outward.x + d.y * e.outward.y;
@@ -56,6 +58,7 @@ Row hinge_angle_of_quadratic(const FlatEdge& e, Flap other) {
   const double along = -(e.own.along * (e.length - e.own.along) / e.own.height +
                          other.along * (e.length - other.along) / other.height) /
                        2;
+
   const Row nn = bilinear(e.outward, e.outward), sn = bilinear(e.direction, e.outward),
             ss = bilinear(e.direction, e.direction);
   Row m;

@@ -155,6 +155,8 @@ class Reader {
     if (left_.size() < sizeof value)
       refuse("ends after " + std::to_string(left_.size()) + " bytes of a value, expected " +
              std::to_string(sizeof value));
+
+    // Any other byte would be no valid truth value.
     if constexpr (std::is_same_v<T, bool>) {
       const int byte = std::to_integer<int>(left_[0]);
       if (byte > 1) refuse("value " + std::to_string(byte) + ", expected 0 or 1");
@@ -256,6 +258,8 @@ void check_hand(const HeldPatch& hand, const MemoryShape& shape) {
   require_index("face", hand.face, shape.cloth_faces);
   for (const Index v : hand.corners) require_index("corner", v, shape.cloth_vertices);
   for (const Index v : hand.vertices) require_index("vertex", v, shape.cloth_vertices);
+
+  // Each pulled vertex has its share of the force and its place within the patch.
   if (hand.share.size() != hand.vertices.size() || hand.offset.size() != hand.vertices.size())
     refuse_shape(where + std::to_string(hand.share.size()) + " shares and " +
                  std::to_string(hand.offset.size()) + " offsets, expected " +
