@@ -230,7 +230,7 @@ TEST_F(Interop, TheRealProbeSaysInOneLineWhyNot) {
   EXPECT_NO_THROW(check_gl("the probe"));
 }
 
-TEST(interop, solvers_on_the_cpu_hand_nothing_out) {
+TEST(InteropWithoutAWindow, SolversOnTheCpuShareNoPositionsOfADevice) {
   for (const Build build : {Build::cpu32, Build::cpu64}) {
     std::unique_ptr<DevicePositions> slot = std::make_unique<FakeDevicePositions>();
     make_simulator(build, small_scene())->positions_on_device(slot);
@@ -238,7 +238,7 @@ TEST(interop, solvers_on_the_cpu_hand_nothing_out) {
   }
 }
 
-TEST(interop, egl_devices_of_cuda_come_first_and_the_wanted_number_before_all) {
+TEST(InteropWithoutAWindow, EglDevicesOfCudaComeFirstAndTheWantedNumberBeforeAll) {
   using Order = std::vector<std::size_t>;
   const int numbers[] = {kNone, 1, 0, kNone, 2};
   EXPECT_EQ(egl_order(numbers, 0), (Order{2, 1, 4, 0, 3}));

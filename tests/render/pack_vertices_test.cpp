@@ -47,7 +47,7 @@ Packed pack(const std::vector<Vec3f>& p, const std::vector<Triangle>& faces) {
   return ::testing::AssertionSuccess();
 }
 
-TEST(pack_vertices, lists_the_faces_of_each_vertex_in_order) {
+TEST(PackVertices, ListsTheFacesOfEachVertexInOrder) {
   const std::vector<Triangle> faces{{2, 1, 0}, {1, 2, 3}, {2, 2, 5}};
   const VertexFaces list = vertex_faces(6, faces);
   EXPECT_EQ(list.corners, (std::vector<Index>{2, 1, 0, 1, 2, 3, 2, 2, 5}));
@@ -56,7 +56,7 @@ TEST(pack_vertices, lists_the_faces_of_each_vertex_in_order) {
   EXPECT_EQ(list.vertices(), 6);
 }
 
-TEST(pack_vertices, gathers_the_bits_that_scattering_gives) {
+TEST(PackVertices, GathersTheBitsThatScatteringGives) {
   const TriangleMesh sphere = make_sphere(0.7, 3000);
   std::vector<Vec3f> p;
   for (const Vec3d x : sphere.positions) p.push_back(convert<float>(x));
@@ -69,7 +69,7 @@ TEST(pack_vertices, gathers_the_bits_that_scattering_gives) {
   }
 }
 
-TEST(pack_vertices, gathers_the_bits_on_a_heap_of_triangles) {
+TEST(PackVertices, GathersTheBitsOnAHeapOfTriangles) {
   std::mt19937 random(7);
   std::normal_distribution<float> number;
   std::uniform_int_distribution<Index> vertex(0, 99);
@@ -83,7 +83,7 @@ TEST(pack_vertices, gathers_the_bits_on_a_heap_of_triangles) {
   EXPECT_EQ(packed.normals[110], (Vec3f{0, 1, 0}));
 }
 
-TEST(pack_vertices, points_up_where_faces_cancel_out_or_a_number_is_none) {
+TEST(PackVertices, NormalsPointUpWhereFacesCancelOutOrANumberIsNotFinite) {
   const std::vector<Vec3f> p{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {NAN, 0, 0}};
   const Packed packed = pack(p, {{0, 1, 2}, {0, 2, 1}, {1, 2, 3}});
   EXPECT_EQ(packed.normals[0], (Vec3f{0, 1, 0}));

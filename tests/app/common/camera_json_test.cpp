@@ -6,7 +6,7 @@
 namespace icloth {
 namespace {
 
-TEST(camera_json, comes_back_as_it_was) {
+TEST(CameraJson, ACameraReadsBackAsItWas) {
   CameraPose pose;
   pose.name = "close \"up\"";
   pose.eye = {0.1, 1.0 / 3, -2.5};
@@ -19,7 +19,7 @@ TEST(camera_json, comes_back_as_it_was) {
   EXPECT_EQ(back->fov, pose.fov);
 }
 
-TEST(camera_json, refuses_what_is_no_camera) {
+TEST(CameraJson, RefusesWhatIsNoCamera) {
   for (const char* text :
        {"", "hello", "[1, 2]", "{}", R"({"eye": [0, 0, 1]})",
         R"({"eye": [0, 0], "target": [0, 0, 0]})", R"({"eye": [0, 0, "1"], "target": [0, 0, 0]})",

@@ -72,14 +72,14 @@ std::unique_ptr<Session> make(FakeOptions options = {}, SessionOptions session =
   return std::make_unique<Session>(std::make_unique<FakeSimulator>(options), session);
 }
 
-TEST(session, publishes_the_start_state_at_once) {
+TEST(Session, PublishesTheStartStateAtOnce) {
   const auto session = make();
   EXPECT_EQ(session->state().positions.size(), 12u);
   EXPECT_EQ(session->state().step, 0);
   EXPECT_FALSE(session->state().playing);
 }
 
-TEST(session, single_steps_then_pauses) {
+TEST(Session, ASingleStepIsFollowedByAPause) {
   const auto session = make();
   step(*session, 3);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -90,7 +90,7 @@ TEST(session, single_steps_then_pauses) {
   EXPECT_TRUE(session->take_reports().empty());
 }
 
-TEST(session, never_waits_for_a_slow_step) {
+TEST(Session, NeverWaitsForASlowStep) {
   const auto session = make({.step_ms = 250});
   session->play();
   std::this_thread::sleep_for(std::chrono::milliseconds(30));  // the first step is under way
@@ -106,7 +106,7 @@ TEST(session, never_waits_for_a_slow_step) {
   EXPECT_TRUE(wait_for_step(*session, 2));
 }
 
-TEST(session, is_not_faster_than_the_clock) {
+TEST(Session, IsNotFasterThanTheClock) {
   const auto session = make();
   const auto begin = Clock::now();
   session->play();
@@ -121,7 +121,7 @@ TEST(session, is_not_faster_than_the_clock) {
   ASSERT_TRUE(wait_for_step(*session, before + 2000));
 }
 
-TEST(session, replays_to_the_same_bits) {
+TEST(Session, ReplaysToTheSameBits) {
   const auto session = make();
   step(*session, 2);
   session->post(event(InputEvent::Kind::grab, 1, {0.5, 1.5, 0.1}));
@@ -138,7 +138,7 @@ TEST(session, replays_to_the_same_bits) {
   EXPECT_EQ(replay(recording), recording.final_hash);
 }
 
-TEST(session, only_the_newest_target_reaches_a_step) {
+TEST(Session, OnlyTheNewestTargetReachesAStep) {
   const auto session = make({.step_ms = 40});
   session->post(event(InputEvent::Kind::grab, 1, {0, 0, 0}));
   session->post(event(InputEvent::Kind::grab, 2, {0, 0, 0}));
@@ -155,7 +155,7 @@ TEST(session, only_the_newest_target_reaches_a_step) {
   EXPECT_DOUBLE_EQ(events[1].target.x, 9.8);
 }
 
-TEST(session, goes_back_and_on_from_there) {
+TEST(Session, GoesBackAndOnFromThere) {
   const auto session = make();
   step(*session, 2);
   const auto positions = session->state().positions;
@@ -175,7 +175,7 @@ TEST(session, goes_back_and_on_from_there) {
   EXPECT_EQ(replay(session->recording()), session->recording().final_hash);
 }
 
-TEST(session, holds_parked_handles_through_a_step_back) {
+TEST(Session, HoldsParkedHandlesThroughAStepBack) {
   const auto session = make();
   session->post(event(InputEvent::Kind::grab, 3, {1, 2, 3}));
   step(*session, 3);
@@ -191,7 +191,7 @@ TEST(session, holds_parked_handles_through_a_step_back) {
   EXPECT_EQ(replay(session->recording()), session->recording().final_hash);
 }
 
-TEST(session, resets_and_keeps_the_parameters) {
+TEST(Session, ResetsAndKeepsTheParameters) {
   const auto session = make();
   session->set("gravity.y", -2);
   step(*session, 3);
@@ -208,7 +208,7 @@ TEST(session, resets_and_keeps_the_parameters) {
   EXPECT_EQ(replay(recording), recording.final_hash);
 }
 
-TEST(session, bounds_the_memory_of_the_history) {
+TEST(Session, BoundsTheMemoryOfTheHistory) {
   SessionOptions options;
   options.history_bytes = 100'000;
   const auto session = make({.vertices = 300}, options);  // 14.4 kB a state
@@ -218,7 +218,7 @@ TEST(session, bounds_the_memory_of_the_history) {
   EXPECT_LT(session->state().history, 7u);
 }
 
-TEST(session, pauses_on_a_refused_step_and_goes_on_with_a_smaller_one) {
+TEST(Session, PausesOnARefusedStepAndGoesOnWithASmallerOne) {
   const auto session = make({.refuse = 2, .refuse_above = 0.006});
   session->set_real_time(false);
   session->play();
@@ -237,7 +237,7 @@ TEST(session, pauses_on_a_refused_step_and_goes_on_with_a_smaller_one) {
             session->recording().final_hash);
 }
 
-TEST(session, refuses_to_run_from_a_bad_start_state) {
+TEST(Session, RefusesToRunFromABadStartState) {
   SessionOptions options;
   options.refusal = "2 pairs of faces cross";
   const auto session = make({}, options);
@@ -250,7 +250,7 @@ TEST(session, refuses_to_run_from_a_bad_start_state) {
   EXPECT_EQ(session->state().failure, options.refusal);
 }
 
-TEST(session, tells_when_the_solver_throws) {
+TEST(Session, TellsWhenTheSolverThrows) {
   const auto session = make({.explode = 1});
   session->play();
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
@@ -258,7 +258,7 @@ TEST(session, tells_when_the_solver_throws) {
   EXPECT_FALSE(session->state().playing);
 }
 
-TEST(session, survives_a_lost_device) {
+TEST(Session, SurvivesALostDevice) {
   const auto session = make({.lose = 3, .on_device = true});
   step(*session, 3);
   const auto positions = session->state().positions;
@@ -279,14 +279,14 @@ TEST(session, survives_a_lost_device) {
   session->stop();
 }
 
-TEST(session, hands_nothing_out_for_a_solver_on_the_cpu) {
+TEST(Session, KeepsNoPositionsOnADeviceForASolverOnTheCpu) {
   const auto session = make();
   step(*session, 2);
   EXPECT_EQ(session->state().on_device, nullptr);
 }
 
 /// The state that is looked at stays whole, on the device too, while the solver goes on.
-TEST(session, every_slot_has_positions_of_its_own_on_the_device) {
+TEST(Session, EverySlotHasPositionsOfItsOwnOnTheDevice) {
   const auto session = make({.vertices = 300, .on_device = true});
   session->set_real_time(false);
   session->play();
@@ -307,7 +307,7 @@ TEST(session, every_slot_has_positions_of_its_own_on_the_device) {
   EXPECT_GE(memories.size(), 2u);
 }
 
-TEST(session, plays_the_scene_s_own_grabs_only_when_asked) {
+TEST(Session, PlaysTheGrabsOfTheSceneOnlyWhenAsked) {
   auto simulator = std::make_unique<FakeSimulator>();
   ScriptedGrab grab;
   grab.release = 10;
@@ -325,7 +325,7 @@ TEST(session, plays_the_scene_s_own_grabs_only_when_asked) {
   EXPECT_TRUE(session.state().handles.empty());
 }
 
-TEST(session, saves_and_says_so) {
+TEST(Session, SavesAStateAndSaysSo) {
   const auto session = make();
   step(*session, 2);
   const std::string path = ::testing::TempDir() + "session_test.json";
@@ -339,7 +339,7 @@ TEST(session, saves_and_says_so) {
   EXPECT_NE(session->state().note.find("not saved"), std::string::npos);
 }
 
-TEST(session, refuses_values_out_of_range_with_a_note) {
+TEST(Session, RefusesValuesOutOfRangeWithANote) {
   const auto session = make();
   session->set("step.time_step", 50);
   ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));

@@ -20,7 +20,7 @@ Action wheel(int modifiers, bool holds) {
   return find_action(Trigger::wheel, 0, {modifiers, holds, Under::cloth});
 }
 
-TEST(bindings, plain_left_drag_grabs_cloth_and_orbits_beside_it) {
+TEST(Bindings, PlainLeftDragGrabsClothAndOrbitsBesideIt) {
   EXPECT_EQ(press(button::kLeft, Under::cloth), Action::grab);
   EXPECT_EQ(press(button::kLeft, Under::handle), Action::grab_handle);
   EXPECT_EQ(press(button::kLeft, Under::other), Action::orbit);
@@ -28,14 +28,14 @@ TEST(bindings, plain_left_drag_grabs_cloth_and_orbits_beside_it) {
   EXPECT_EQ(press(button::kLeft, Under::cloth, modifier::kControl), Action::pin_point);
 }
 
-TEST(bindings, middle_and_right_drag_move_the_camera_also_over_cloth) {
+TEST(Bindings, MiddleAndRightDragMoveTheCameraAlsoOverCloth) {
   EXPECT_EQ(press(button::kMiddle, Under::cloth), Action::orbit);
   EXPECT_EQ(press(button::kMiddle, Under::cloth, modifier::kShift), Action::pan);
   EXPECT_EQ(press(button::kMiddle, Under::cloth, modifier::kControl), Action::dolly_drag);
   EXPECT_EQ(press(button::kRight, Under::cloth), Action::pan);
 }
 
-TEST(bindings, the_holding_hand_has_its_own_keys) {
+TEST(Bindings, TheHoldingHandHasItsOwnKeys) {
   EXPECT_EQ(press(button::kRight, Under::cloth, 0, true), Action::park);
   EXPECT_EQ(strike('P', 0, true), Action::park);
   EXPECT_EQ(strike('P'), Action::none);
@@ -46,7 +46,7 @@ TEST(bindings, the_holding_hand_has_its_own_keys) {
   EXPECT_EQ(wheel(modifier::kShift, true), Action::grab_stiffness);
 }
 
-TEST(bindings, only_control_q_quits) {
+TEST(Bindings, OnlyControlQQuits) {
   EXPECT_EQ(strike('Q', modifier::kControl), Action::quit);
   EXPECT_EQ(strike(key::kEscape), Action::cancel);
   int quits = 0;
@@ -54,7 +54,7 @@ TEST(bindings, only_control_q_quits) {
   EXPECT_EQ(quits, 1);
 }
 
-TEST(bindings, no_row_is_hidden_by_one_before_it) {
+TEST(Bindings, NoRowIsHiddenByOneBeforeIt) {
   const auto table = binding_table();
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -67,7 +67,7 @@ TEST(bindings, no_row_is_hidden_by_one_before_it) {
   }
 }
 
-TEST(bindings, every_row_is_described_or_follows_its_description) {
+TEST(Bindings, EveryRowIsDescribedOrFollowsItsDescription) {
   const Binding* described = nullptr;
   for (const Binding& row : binding_table()) {
     EXPECT_NE(row.action, Action::none);
@@ -81,7 +81,7 @@ TEST(bindings, every_row_is_described_or_follows_its_description) {
   }
 }
 
-TEST(bindings, groups_are_not_torn_apart) {
+TEST(Bindings, GroupsAreNotTornApart) {
   std::set<std::string_view> seen;
   std::string_view last;
   for (const Binding& row : binding_table()) {
@@ -92,7 +92,7 @@ TEST(bindings, groups_are_not_torn_apart) {
   }
 }
 
-TEST(bindings, the_hint_bar_says_what_can_be_done_now) {
+TEST(Bindings, TheHintBarSaysWhatCanBeDoneNow) {
   const std::string free = hint_line(false), holds = hint_line(true);
   EXPECT_NE(free.find("grab"), std::string::npos);
   EXPECT_EQ(free.find("park"), std::string::npos);
@@ -102,7 +102,7 @@ TEST(bindings, the_hint_bar_says_what_can_be_done_now) {
   EXPECT_LT(holds.size(), 140u);
 }
 
-TEST(bindings, the_page_of_keys_is_the_table) {
+TEST(Bindings, ThePageOfKeysIsTheTable) {
   std::ifstream file(ICLOTH_TEST_FOLDER "/../docs/keys.md");
   ASSERT_TRUE(file) << "docs/keys.md is missing";
   std::ostringstream text;

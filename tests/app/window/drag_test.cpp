@@ -21,7 +21,7 @@ void expect_point(Vec3d actual, Vec3d expected) {
       << expected.y << " " << expected.z;
 }
 
-TEST(drag, grabs_at_the_exact_hit) {
+TEST(Drag, GrabsTheClothExactlyWhereItIsHit) {
   Drag drag;
   drag.set_defaults(0.03, 500);
   drag.begin(ray(0, 0), hit(0, 0, 0));
@@ -37,7 +37,7 @@ TEST(drag, grabs_at_the_exact_hit) {
   EXPECT_TRUE(drag.take_events().empty());
 }
 
-TEST(drag, moves_in_the_screen_parallel_plane_at_hit_depth) {
+TEST(Drag, MovesTheHandInThePlaneOfTheScreen) {
   Drag drag;
   drag.begin(ray(0.1, 0), hit(0.2, 0, 0));
   drag.take_events();
@@ -50,7 +50,7 @@ TEST(drag, moves_in_the_screen_parallel_plane_at_hit_depth) {
   EXPECT_TRUE(drag.take_events().empty()) << "a hand that rests sends nothing";
 }
 
-TEST(drag, lets_go_when_the_button_goes_up) {
+TEST(Drag, LetsGoWhenTheButtonGoesUp) {
   Drag drag;
   drag.begin(ray(0, 0), hit(0, 0, 0));
   drag.take_events();
@@ -62,7 +62,7 @@ TEST(drag, lets_go_when_the_button_goes_up) {
   EXPECT_FALSE(drag.grabbing());
 }
 
-TEST(drag, parks_and_stays_parked_when_the_button_goes_up) {
+TEST(Drag, ParksAndStaysParkedWhenTheButtonGoesUp) {
   Drag drag;
   drag.begin(ray(0, 0), hit(0, 0, 0));
   drag.move(ray(0.5, 0));
@@ -76,7 +76,7 @@ TEST(drag, parks_and_stays_parked_when_the_button_goes_up) {
   expect_point(drag.handles()[0].target, {1, 0, 0});
 }
 
-TEST(drag, takes_a_parked_handle_again_without_a_jump) {
+TEST(Drag, TakesAParkedHandleAgainWithoutAJump) {
   Drag drag;
   drag.pin(hit(0, 0, 0));
   drag.take_events();
@@ -91,7 +91,7 @@ TEST(drag, takes_a_parked_handle_again_without_a_jump) {
   EXPECT_TRUE(drag.take_events().empty());
 }
 
-TEST(drag, selected_handles_move_together) {
+TEST(Drag, SelectedHandlesMoveTogether) {
   Drag drag;
   drag.pin(hit(0, 0, 0));
   drag.pin(hit(1, 0, 0));
@@ -107,7 +107,7 @@ TEST(drag, selected_handles_move_together) {
   expect_point(drag.find(3)->target, {2, 0, 0});
 }
 
-TEST(drag, the_wheel_changes_depth_size_and_strength) {
+TEST(Drag, TheWheelChangesDepthSizeAndStrength) {
   Drag drag;
   drag.set_defaults(0.02, 400);
   drag.begin(ray(0, 0), hit(0, 0, 0));
@@ -132,7 +132,7 @@ TEST(drag, the_wheel_changes_depth_size_and_strength) {
   EXPECT_LE(drag.radius(), find_parameter("grab.radius")->maximum);
 }
 
-TEST(drag, escape_undoes_the_grab) {
+TEST(Drag, EscapeUndoesTheGrab) {
   Drag drag;
   drag.begin(ray(0, 0), hit(0, 0, 0));
   drag.move(ray(1, 0));
@@ -154,7 +154,7 @@ TEST(drag, escape_undoes_the_grab) {
   EXPECT_FALSE(drag.find(1)->selected);
 }
 
-TEST(drag, releases_the_grabbed_the_selected_or_the_last) {
+TEST(Drag, ReleasesTheGrabbedTheSelectedOrTheLastHandle) {
   Drag drag;
   for (int k = 0; k < 4; ++k) drag.pin(hit(k, 0, 0));
   drag.take_events();
@@ -184,7 +184,7 @@ TEST(drag, releases_the_grabbed_the_selected_or_the_last) {
   EXPECT_TRUE(drag.handles().empty());
 }
 
-TEST(drag, the_target_stays_in_space_when_the_camera_turns) {
+TEST(Drag, TheTargetStaysInSpaceWhenTheCameraTurns) {
   Drag drag;
   drag.begin(ray(0.2, 0), hit(0.4, 0, 0));
   drag.take_events();
@@ -198,7 +198,7 @@ TEST(drag, the_target_stays_in_space_when_the_camera_turns) {
   expect_point(drag.find(1)->target, {0.4, 0.16, 0});
 }
 
-TEST(drag, after_a_jump_in_time_only_held_handles_remain) {
+TEST(Drag, AfterAJumpInTimeOnlyHeldHandlesRemain) {
   Drag drag;
   drag.pin(hit(0, 0, 0));
   drag.begin(ray(0, 0), hit(1, 0, 0));
@@ -220,7 +220,7 @@ TEST(drag, after_a_jump_in_time_only_held_handles_remain) {
   EXPECT_EQ(events[0].handle, 2);
 }
 
-TEST(drag, a_new_grab_gets_a_free_number) {
+TEST(Drag, ANewGrabGetsAFreeNumber) {
   Drag drag;
   for (int k = 0; k < 1200; ++k) drag.pin(hit(0, 0, 0));
   EXPECT_EQ(drag.handles().size(), 999u) << "1000 and above belong to scripted grabs";
@@ -229,7 +229,7 @@ TEST(drag, a_new_grab_gets_a_free_number) {
   EXPECT_EQ(drag.active(), 17);
 }
 
-TEST(drag, a_ray_beside_the_view_stays_finite) {
+TEST(Drag, ARayBesideTheViewStaysFinite) {
   const Vec3d p = point_at_depth({{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}, 1);
   EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
 }

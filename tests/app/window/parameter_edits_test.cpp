@@ -12,7 +12,7 @@ namespace {
 
 const ParameterInfo& row(const char* name) { return *find_parameter(name); }
 
-TEST(parameter_edits, clamps_rounds_and_marks) {
+TEST(ParameterEdits, AValueIsClampedRoundedAndMarked) {
   ParameterEdits edits{Parameters{}};
   const ParameterInfo& mu = row("impact_zones.penalty");
   const ParameterInfo& rounds = row("impact_zones.max_rounds");
@@ -28,7 +28,7 @@ TEST(parameter_edits, clamps_rounds_and_marks) {
   EXPECT_FALSE(edits.changed(mu));
 }
 
-TEST(parameter_edits, one_gesture_is_undone_at_once) {
+TEST(ParameterEdits, OneGestureIsUndoneAtOnce) {
   ParameterEdits edits{Parameters{}};
   const ParameterInfo& gravity = row("gravity.y");
   const double start = edits.value(gravity);
@@ -50,7 +50,7 @@ TEST(parameter_edits, one_gesture_is_undone_at_once) {
   EXPECT_FALSE(edits.redo()) << "a new edit forgets what was undone";
 }
 
-TEST(parameter_edits, a_preset_is_undone_at_once) {
+TEST(ParameterEdits, APresetIsUndoneAtOnce) {
   ParameterEdits edits{Parameters{}};
   Parameters wanted = edits.values();
   apply_preset(wanted, find_preset("fast"));
@@ -69,7 +69,7 @@ TEST(parameter_edits, a_preset_is_undone_at_once) {
   EXPECT_FALSE(is_set(edits.values(), find_preset("fast")));
 }
 
-TEST(parameter_edits, hands_over_the_newest_values_in_order) {
+TEST(ParameterEdits, TheNewestValuesAreTakenInTheirOrder) {
   ParameterEdits edits{Parameters{}};
   edits.set(row("wind.x"), 1);
   edits.set(row("wind.x"), 2, true);
