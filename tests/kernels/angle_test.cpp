@@ -36,7 +36,7 @@ TEST(Angle, IsThatOfTheLibraryWithinThreeUnits) {
   EXPECT_LT(worst, 3);
 }
 
-TEST(Angle, AxesAndDiagonals) {
+TEST(Angle, IsExactOnAxesAndDiagonals) {
   EXPECT_EQ(angle_of(0.0f, 0.0f), 0);
   EXPECT_EQ(angle_of(0.0f, 2.0f), 0);
   for (int k = -3; k <= 4; ++k) {
@@ -59,7 +59,7 @@ TEST(Angle, IsOddInYAndGrowsMonotonically) {
   }
 }
 
-TEST(Angle, TinyNumbersAndNaN) {
+TEST(Angle, TakesTinyNumbersAndKeepsNaN) {
   const float tiny = std::numeric_limits<float>::denorm_min(),
               nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FLOAT_EQ(angle_of(tiny, tiny), static_cast<float>(kPi / 4));
@@ -68,7 +68,9 @@ TEST(Angle, TinyNumbersAndNaN) {
   EXPECT_TRUE(std::isnan(angle_of(nan, 1.0f)) && std::isnan(angle_of(1.0f, nan)));
 }
 
-TEST(Angle, InDoubleIsTheLibrarys) { EXPECT_EQ(angle_of(0.3, -0.7), std::atan2(0.3, -0.7)); }
+TEST(Angle, InDoublePrecisionIsThatOfTheLibrary) {
+  EXPECT_EQ(angle_of(0.3, -0.7), std::atan2(0.3, -0.7));
+}
 
 }  // namespace
 }  // namespace icloth

@@ -70,7 +70,7 @@ void check_segments(Vec3d a0, Vec3d a1, Vec3d b0, Vec3d b1) {
   EXPECT_EQ(x.interior, x.s > 0 && x.s < 1 && x.t > 0 && x.t < 1);
 }
 
-TEST(ClosestPointTriangle, FaceEdgesAndVertices) {
+TEST(ClosestPointTriangle, LiesOnTheFaceAnEdgeOrAVertex) {
   const Vec3d a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
   const auto face = closest_point_triangle(Vec3d{0.25, 0.25, 2}, a, b, c);
   EXPECT_TRUE(face.interior);
@@ -87,7 +87,7 @@ TEST(ClosestPointTriangle, FaceEdgesAndVertices) {
   EXPECT_FALSE(closest_point_triangle(Vec3d{0.5, 0, 1}, a, b, c).interior) << "above an edge";
 }
 
-TEST(ClosestPointTriangle, AgainstSampling) {
+TEST(ClosestPointTriangle, NoSampleIsNearer) {
   std::mt19937 generator(1);
   for (int k = 0; k < 1000; ++k) {
     const Vec3d a = random_point(generator, 1), b = random_point(generator, 1),
@@ -101,7 +101,7 @@ TEST(ClosestPointTriangle, AgainstSampling) {
   }
 }
 
-TEST(ClosestPointsSegments, CrossingAndApart) {
+TEST(ClosestPointsSegments, AreFoundOnCrossingAndDistantSegments) {
   const auto crossing =
       closest_points_segments(Vec3d{-1, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, -1, 3}, Vec3d{0, 3, 3});
   EXPECT_TRUE(crossing.interior);
@@ -116,7 +116,7 @@ TEST(ClosestPointsSegments, CrossingAndApart) {
   EXPECT_DOUBLE_EQ(ends.distance2, 25);
 }
 
-TEST(ClosestPointsSegments, AgainstSampling) {
+TEST(ClosestPointsSegments, NoSamplesAreNearer) {
   std::mt19937 generator(2);
   for (int k = 0; k < 1000; ++k) {
     const Vec3d a0 = random_point(generator, 1), a1 = random_point(generator, 1),

@@ -116,7 +116,7 @@ TEST(Compare, OneBlobIsRefusedWhereTheShareIsNot) {
   EXPECT_FALSE(compare(image, picture(), tolerance).accepted(tolerance));
 }
 
-TEST(Compare, SizeAndBlankness) {
+TEST(Compare, OtherSizesAndBlankPicturesAreRefused) {
   EXPECT_FALSE(compare(Image(100, 79), picture()).accepted({}));
   Image blank(100, 80);
   const ImageDifference difference = compare(blank, blank);

@@ -113,7 +113,7 @@ TEST(EnergyBalance, OfFreeFallIsNothingInSecondOrder) {
   }
 }
 
-TEST(EnergyBalance, OfSubstepsAddsUp) {
+TEST(EnergyBalance, SubstepsAddUp) {
   auto scene = sheet_scene(lying(0.3, 200));
   scene->parameters.step.max_travel = 0.5;  // of an edge: fast cloth takes several substeps
   Watched run(scene);
@@ -312,7 +312,7 @@ TEST(MomentumError, VanishesWithTheResidual) {
   for (int k = 0; k < 5; ++k) EXPECT_LT(run.step().momentum_error, 1e-9);
 }
 
-TEST(Estimates, OfARefusedStepAreZero) {
+TEST(Estimates, ARefusedStepHasZeroEstimates) {
   auto scene = sheet_scene(lying(0.2, 100));
   Watched run(scene);
   run.step();

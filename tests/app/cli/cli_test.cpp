@@ -94,7 +94,7 @@ constexpr const char* kCrossing =
 
 }  // namespace
 
-TEST_F(Cli, HelpAndVersion) {
+TEST_F(Cli, HelpAndVersionArePrinted) {
   EXPECT_EQ(icloth("--help").code, 0);
   EXPECT_TRUE(contains(icloth("--help").out, "check"));
   EXPECT_EQ(icloth("run --help").code, 0);
@@ -103,7 +103,7 @@ TEST_F(Cli, HelpAndVersion) {
   EXPECT_TRUE(version.out.starts_with("icloth ")) << version.out;
 }
 
-TEST_F(Cli, BadUsage) {
+TEST_F(Cli, BadUsageIsRefusedInOneLine) {
   expect_bad_input("rnu", "'run'");
   expect_bad_input("run", "SCENE");
   expect_bad_input("run scarf --nonsense", "--nonsense");
@@ -124,7 +124,7 @@ TEST_F(Cli, BadUsage) {
   expect_bad_input("bench --threads x", "--threads");
 }
 
-TEST_F(Cli, BadParameters) {
+TEST_F(Cli, BadParametersAreRefusedInOneLine) {
   expect_bad_input("run scarf --set time_step=0", "step.time_step");
   expect_bad_input("run scarf --set time_step", "time_step");
   expect_bad_input("run scarf --set proximity.thicknes=0.001", "'proximity.thickness'");
@@ -132,7 +132,7 @@ TEST_F(Cli, BadParameters) {
   expect_bad_input("run scarf --set mu=", "impact_zones.penalty");
 }
 
-TEST_F(Cli, BadFiles) {
+TEST_F(Cli, BadFilesAreRefusedInOneLine) {
   write("broken.json", "{ \"cloths\": [");
   write("unknown.json", "{ \"cloth\": [] }");
   write("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 x 0\nf 1 2 3\n");
@@ -156,7 +156,7 @@ TEST_F(Cli, BadFiles) {
   expect_bad_input("ccd nosuch.csv", "nosuch.csv");
 }
 
-TEST_F(Cli, MissingDisplayAndDevice) {
+TEST_F(Cli, AMissingDisplayOrDeviceIsSaidInOneLine) {
   for (const char* arguments : {"", "view", "view scarf", "scarf"}) {
     const Outcome window = icloth(arguments, "-u DISPLAY -u WAYLAND_DISPLAY");
     EXPECT_EQ(window.code, 3) << arguments << window.err;

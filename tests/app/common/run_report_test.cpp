@@ -53,7 +53,7 @@ Scene named_scene() {
 
 }  // namespace
 
-TEST(ElementNames, CountWithinTheirObject) {
+TEST(ElementNames, NumbersCountWithinTheirObject) {
   const ElementNames names(named_scene());
   EXPECT_EQ(names.face(0), "cloth:shirt face 0");
   EXPECT_EQ(names.face(3), "cloth:skirt face 1");
@@ -62,7 +62,7 @@ TEST(ElementNames, CountWithinTheirObject) {
   EXPECT_EQ(names.pair(IntersectingFaces{1, 4}), "cloth:shirt face 1 — obstacle:body face 0");
 }
 
-TEST(ElementNames, OffendingPairs) {
+TEST(ElementNames, OffendingPairsNameBothObjects) {
   const ElementNames names(named_scene());
   EXPECT_EQ(names.pair(OffendingPair{false, {5, 8, 9, 10}}),
             "vertex cloth:skirt 1 — face obstacle:body 0 1 2");
@@ -70,7 +70,7 @@ TEST(ElementNames, OffendingPairs) {
             "edge cloth:shirt 0 3 — edge cloth:skirt 0 2");
 }
 
-TEST(ElementNames, PinsThatABodyIsPushedInto) {
+TEST(ElementNames, PinsThatABodyIsPushedIntoAreNamed) {
   Scene scene = named_scene();
   for (Cloth& cloth : scene.cloths) cloth.mesh.faces = {{0, 1, 2}, {1, 3, 2}};
   scene.cloths[1].pins = {1, 3};
@@ -94,7 +94,7 @@ TEST(ElementNames, PinsThatABodyIsPushedInto) {
   EXPECT_EQ(pins_in_the_way(scene, names, report), "");
 }
 
-TEST(RunStatistics, MedianMeanLargestSum) {
+TEST(RunStatistics, GivesMedianMeanLargestAndSum) {
   RunStatistics statistics;
   EXPECT_EQ(statistics.median("ms_total"), 0);
   EXPECT_EQ(statistics.steps_per_second(), 0);

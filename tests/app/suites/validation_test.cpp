@@ -83,7 +83,7 @@ TEST(Strip, IsFlatAndWhole) {
   EXPECT_EQ(strip.row(7).back(), strip.vertices() - 1);
 }
 
-TEST(References, HeavyElastica) {
+TEST(References, HeavyElasticaAgreesWithItsBoundaryValueProblem) {
   // Small loads: H/L = Γ/8. Large ones: all but a layer of size Γ^(-1/3) hangs.
   EXPECT_NEAR(heavy_elastica(1e-3).drop, 1e-3 / 8, 1e-8);
   EXPECT_GT(heavy_elastica(5000).drop, 0.99);
@@ -100,13 +100,13 @@ TEST(References, HeavyElastica) {
   }
 }
 
-TEST(References, Catenary) {
+TEST(References, CatenaryHasTheKnownSagParameterAndAngle) {
   EXPECT_NEAR(catenary(1.1).sag, 0.20030, 1e-5);
   EXPECT_NEAR(catenary(2).parameter, 0.22964, 1e-5);
   EXPECT_NEAR(catenary(1.5).end_angle * 180 / std::numbers::pi, 67.66, 5e-3);
 }
 
-TEST(References, HangingStripAndChain) {
+TEST(References, HangingStripAndChainHaveTheKnownStretchAndModes) {
   EXPECT_NEAR(hanging_elongation(1, 0.187, 9.81, 50), 0.017717, 1e-6);
   // Linear theory: ρ g L²/2k.
   EXPECT_NEAR(hanging_elongation(1, 0.187, 9.81, 1e6) / (0.187 * 9.81 / 2e6), 1, 1e-5);
@@ -115,7 +115,7 @@ TEST(References, HangingStripAndChain) {
   EXPECT_NEAR(bessel_zero(3), 8.653728, 1e-6);
 }
 
-TEST(References, PressedElastica) {
+TEST(References, PressedElasticaAgreesWithItsBoundaryValueProblem) {
   // Solved as a boundary value problem: friction needed at a shortening, and the pressure.
   const double known[][2] = {{.01, .0448}, {.04, .0919}, {.1, .1528}, {.2, .2378}, {.3, .3265}};
   for (const auto& [shortening, friction] : known)
@@ -126,7 +126,7 @@ TEST(References, PressedElastica) {
   EXPECT_NEAR(tip[1], 0.9, 1e-6);
 }
 
-TEST(References, Belt) {
+TEST(References, ALightBeltAgreesWithEulerAndEytelwein) {
   // Light against its legs: Euler and Eytelwein.
   for (const double friction : {.1, .3, .5})
     EXPECT_NEAR(belt_leg(friction, 1, 1e-6), std::exp(friction * std::numbers::pi), 1e-4);

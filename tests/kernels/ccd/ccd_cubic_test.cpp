@@ -95,7 +95,7 @@ Bernstein3<double> cubic(double a, double b, double c, double d) {
   return Bernstein3<double>(VolumeCubic<double>{a, 3 * b, 3 * c, d, 0, 1e-15});
 }
 
-TEST(FirstZero, RootsOfEveryKind) {
+TEST(FirstZero, FindsRootsOfEveryKind) {
   const double root = std::cbrt(1 + std::sqrt(2)) - std::cbrt(std::sqrt(2) - 1);  // t³ + 3t = 2
   EXPECT_NEAR(first_zero_bound(cubic(1, 0.5, 0, -1), 0.0), root, 1e-13);
   EXPECT_EQ(first_zero_bound(cubic(1, 2, 3, 4), 0.0), kNever);
@@ -117,7 +117,7 @@ TEST(FirstZero, RootsOfEveryKind) {
   EXPECT_EQ(first_zero_bound(three, 0.8), kNever);
 }
 
-TEST(FirstZero, NothingBeforeIt) {
+TEST(FirstZero, LeavesNoRootBeforeIt) {
   std::mt19937 generator(5);
   std::normal_distribution<double> gauss;
   int found = 0;

@@ -113,7 +113,7 @@ TEST(ElementaryCcd, VertexFallsThroughFace) {
   expect_miss(PairKind::vf, falling_vertex({0.25, 1, 0.25}, {0.25, 0.01, 0.25}));
 }
 
-TEST(ElementaryCcd, ClosedPrimitivesAndClosedInterval) {
+TEST(ElementaryCcd, BordersAndBothEndsOfTheStepCount) {
   // On an edge, on a vertex, and an ulp beside them.
   expect_hit(PairKind::vf, falling_vertex({0.5, 1, 0.5}, {0.5, -1, 0.5}), 0.5);
   expect_hit(PairKind::vf, falling_vertex({0, 1, 0}, {0, -1, 0}), 0.5);
@@ -141,7 +141,7 @@ Query grazing(double gap) {
   return q;
 }
 
-TEST(ElementaryCcd, GrazingDoubleRoot) {
+TEST(ElementaryCcd, AGrazingContactIsFoundAndAGapIsNot) {
   const CcdHit hit = expect_hit(PairKind::vf, grazing(0), 0.5);
   EXPECT_GT(hit.normal.z, 0);
   expect_miss(PairKind::vf, grazing(1e-6));
@@ -151,7 +151,7 @@ TEST(ElementaryCcd, GrazingDoubleRoot) {
   EXPECT_NEAR(two.toi, 0.5 - 0x1p-10, 1e-9);
 }
 
-TEST(ElementaryCcd, EdgesCross) {
+TEST(ElementaryCcd, CrossingEdgesMeetAtTheirTime) {
   const Query q{{{-1, 0, 0}, {1, 0, 0}, {0, 1, -1}, {0, 1, 3}},
                 {{-1, 0, 0}, {1, 0, 0}, {0, -3, -1}, {0, -3, 3}}};
   const CcdHit hit = expect_hit(PairKind::ee, q, 0.25);
@@ -160,7 +160,7 @@ TEST(ElementaryCcd, EdgesCross) {
   EXPECT_NEAR(norm(hit.normal - Vec3d{0, 1, 0}), 0, 1e-12);
 }
 
-TEST(ElementaryCcd, ParallelAndCollinearEdges) {
+TEST(ElementaryCcd, ParallelAndCollinearEdgesAreDecided) {
   // Parallel edges fall on one another, side by side or overlapping.
   const auto parallel = [](double x, double gap) {
     return Query{{{0, 0, 0}, {1, 0, 0}, {x, 1, gap}, {x + 1, 1, gap}},
@@ -184,7 +184,7 @@ TEST(ElementaryCcd, ParallelAndCollinearEdges) {
   EXPECT_FALSE(ccd_ee(sliding(1e-4), 1e-5, thick));
 }
 
-TEST(ElementaryCcd, CoplanarThroughout) {
+TEST(ElementaryCcd, MotionInOnePlaneIsDecided) {
   // The vertex moves in the plane of the face, in from the side or past a corner.
   const CcdHit in = expect_hit(PairKind::vf, falling_vertex({0.25, 0, -1}, {0.25, 0, 1}), 0.5);
   EXPECT_NEAR(norm(in.normal - Vec3d{0, 0, -1}), 0, 1e-9);
@@ -204,7 +204,7 @@ TEST(ElementaryCcd, CoplanarThroughout) {
   EXPECT_LE(hit.toi, 2.0 / 3);
 }
 
-TEST(ElementaryCcd, DegenerateShapes) {
+TEST(ElementaryCcd, NeedlesSegmentsAndPointsAreDecided) {
   // A needle of width 1e-10, a face that is a segment, and one that is a point.
   const Query needle{{{0.5, 1, 5e-11}, {0, 0, 0}, {1, 0, 0}, {1, 0, 1e-10}},
                      {{0.5, -1, 2e-11}, {0, 0, 0}, {1, 0, 0}, {1, 0, 1e-10}}};

@@ -81,7 +81,7 @@ TEST(Friction, OfABodyComesFirstAndThatOfTwoClothsIsTheirMean) {
   EXPECT_EQ(of(3, 5), (std::set<Real>{Real(0.25)}));
 }
 
-TEST(Friction, OfNoneIsAValueToo) {
+TEST(Friction, ZeroIsAValueOfItsOwn) {
   auto found = coefficients(stack({0.0, 0.0, 1.0, {}, 0.0, 0.0}));
   for (const Objects& pair : {Objects{0, 4}, Objects{0, 1}, Objects{2, 3}, Objects{3, 5}})
     EXPECT_EQ(found[pair], (std::set<Real>{Real(0)}));

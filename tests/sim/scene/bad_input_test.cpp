@@ -35,7 +35,7 @@ struct BadFile {
 
 const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-TEST(BadInput, Obj) {
+TEST(BadInput, BrokenObjFilesAreRefused) {
   const TemporaryFolder folder;
   const std::vector<BadFile> files = {
       {"short_v.obj", "v 0 0 0\nv 1 0\n", {"line 2", "vertex 2", "(end of line)", "three finite"}},
@@ -61,7 +61,7 @@ TEST(BadInput, Obj) {
   }
 }
 
-TEST(BadInput, Ply) {
+TEST(BadInput, BrokenPlyFilesAreRefused) {
   const TemporaryFolder folder;
   const std::string vertices =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
@@ -96,7 +96,7 @@ TEST(BadInput, Ply) {
   }
 }
 
-TEST(BadInput, MissingAndUnknownFiles) {
+TEST(BadInput, MissingFilesAndUnknownFormatsAreRefused) {
   const TemporaryFolder folder;
   expect_error([&] { read_mesh(folder.path("none.obj")); }, {"none.obj", "no such file"});
   expect_error([&] { read_mesh(folder.path("a.stl")); }, {"a.stl", "'.stl'", ".obj or .ply"});
@@ -111,7 +111,7 @@ TEST(BadInput, MissingAndUnknownFiles) {
   expect_error([&] { write_obj(folder.path("none/a.obj"), nothing); }, {"none/a.obj", "written"});
 }
 
-TEST(BadInput, ClothMeshes) {
+TEST(BadInput, ClothMeshesThatCannotBeClothAreRefused) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
   expect_error([&] { check_cloth_mesh(mesh, "m"); }, {"m:", "0 triangles"});
@@ -121,7 +121,7 @@ TEST(BadInput, ClothMeshes) {
   expect_error([&] { check_cloth_mesh(mesh, "m"); }, {"triangle 1", "3 1 3", "three different"});
 }
 
-TEST(BadInput, PolygonsThatCannotBeCut) {
+TEST(BadInput, PolygonsThatCannotBeCutAreRefused) {
   const TemporaryFolder folder;
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.1 0\nv 2 0 0\nv 3 0 0\n";
   const std::string header =
@@ -164,7 +164,7 @@ std::function<void()> read_cache(const std::string& path, Index vertices) {
   return [path, vertices] { read_point_cache(path, vertices); };
 }
 
-TEST(BadInput, Pc2PointCaches) {
+TEST(BadInput, BrokenPc2PointCachesAreRefused) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& bytes, Index vertices) {
     return read_cache(folder.write("a.pc2", bytes), vertices);
@@ -184,7 +184,7 @@ TEST(BadInput, Pc2PointCaches) {
   expect_error(read(nan, 1), {"frame 0", "vertex 0", "finite"});
 }
 
-TEST(BadInput, MddPointCaches) {
+TEST(BadInput, BrokenMddPointCachesAreRefused) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& bytes, Index vertices) {
     return read_cache(folder.write("a.mdd", bytes), vertices);
@@ -243,7 +243,7 @@ std::string scene(const std::string& top, const std::string& cloth = "") {
          "}]}";
 }
 
-TEST(BadInput, Scenes) {
+TEST(BadInput, ScenesWithBadValuesAreRefused) {
   const TemporaryFolder folder;
   const std::string path_start = R"("input": [{"vertex": 0, "path": )";
   const std::vector<BadFile> files = {
@@ -316,7 +316,7 @@ TEST(BadInput, Scenes) {
   }
 }
 
-TEST(BadInput, ClothThatIsDividedTooOften) {
+TEST(BadInput, ClothThatIsDividedTooOftenIsRefused) {
   const TemporaryFolder folder;
   folder.write("a.obj", kCorners + "f 1 2 3\n");
   const std::string path =
@@ -324,7 +324,7 @@ TEST(BadInput, ClothThatIsDividedTooOften) {
   expect_error([&] { load_scene(path, {}); }, {"cloths[0].subdivide", "value 7", "from 0 to 6"});
 }
 
-TEST(BadInput, JsonFilesOfMoreThanTheLargestSize) {
+TEST(BadInput, JsonFilesAboveTheLargestSizeAreRefused) {
   // The file has a length but takes no room on the disk, and must not be read into memory.
   const TemporaryFolder folder;
   const std::string path = folder.write("large.json", "{");
@@ -332,7 +332,7 @@ TEST(BadInput, JsonFilesOfMoreThanTheLargestSize) {
   expect_error([&] { load_scene(path, {}); }, {"large.json", "268435457 bytes", "268435456"});
 }
 
-TEST(BadInput, MaterialsWithTooManyBases) {
+TEST(BadInput, MaterialsWithTooManyBasesAreRefused) {
   // Each file takes the next one as its base; the last one stands on a fabric that is built in.
   const TemporaryFolder folder;
   const auto name = [](int k) { return std::to_string(k) + ".json"; };
@@ -347,7 +347,7 @@ TEST(BadInput, MaterialsWithTooManyBases) {
   expect_error([&] { load_material(chain(9), ""); }, {"base", "come to an end"});
 }
 
-TEST(BadInput, Overrides) {
+TEST(BadInput, OverridesWithBadValuesAreRefused) {
   const auto load = [](const std::string& argument) {
     return [argument] { load_scene("sphere", std::vector<std::string>{argument}); };
   };
@@ -358,7 +358,7 @@ TEST(BadInput, Overrides) {
   expect_error(load("time_step=-1"), {"time_step", "'-1'", "to 0.1 s"});
 }
 
-TEST(BadInput, Materials) {
+TEST(BadInput, MaterialsWithBadValuesAreRefused) {
   const TemporaryFolder folder;
   const std::vector<BadFile> files = {
       {"a.json", R"({"density": 0.1})", {"a.json", "stretching", "missing"}},

@@ -93,7 +93,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(Recording, NameStepAndEventOfAnImpossibleGrab) {
+TEST(Recording, AnImpossibleGrabIsNamedByStepAndEvent) {
   EXPECT_EQ(refusal_of(recording_with("3", "[0.2, 0.3, 0.5]")), "");
   for (const char* weights : {"[2, -0.5, -0.5]", "[0.2, 0.2, 0.2]", "[-1, 1, 1]", "[null, 0, 1]",
                               "[1e300, 0, 0]", "[1, 0]"}) {
@@ -105,7 +105,7 @@ TEST(Recording, NameStepAndEventOfAnImpossibleGrab) {
       holds(refusal_of(recording_with("1", "[1, 0, 0]", "-7")), "steps[1].events[0].handle"));
 }
 
-TEST(Recording, OfAnotherSceneAreRefused) {
+TEST(Recording, RecordingsOfAnotherSceneAreRefused) {
   Scene scene;
   scene.name = "other";
   scene.cloths.resize(1);

@@ -228,7 +228,7 @@ TEST(Repair, LeavesSheetsThatLieInEachOther) {
   EXPECT_EQ(repair.moved, 0u) << "no side is known";
 }
 
-TEST(Contours, OfABumpCloseOnBothSheets) {
+TEST(Contours, TheContourOfABumpClosesOnBothSheets) {
   Scene scene;
   scene.cloths.push_back(make_sheet(lying(0.2, 500), {}));
   scene.cloths.push_back(shaped_sheet(0.2, 700, [](Vec3d p) {

@@ -39,7 +39,7 @@ TEST(SceneIo, OverridesComeLast) {
   EXPECT_EQ(scene->parameters.step.time_step, 0.002);
 }
 
-TEST(SceneIo, ObjectsGrabsAndCameras) {
+TEST(SceneIo, ReadsObjectsGrabsAndCameras) {
   const auto scene = load(kData + "drop.json");
   ASSERT_EQ(scene->cloths.size(), 1u);
   const Cloth& sheet = scene->cloths[0];
@@ -56,7 +56,7 @@ TEST(SceneIo, ObjectsGrabsAndCameras) {
   EXPECT_EQ(scene->cameras.at(0).eye, (Vec3d{0, 0.4, 1}));
 }
 
-TEST(SceneIo, PinsByNameNumberAndBox) {
+TEST(SceneIo, PinsAreGivenByNameNumberAndBox) {
   const TemporaryFolder folder;
   const std::string start = R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "triangles": 50,)";
   const auto named = load(folder.write("a.json", start + R"("pins": ["top", 0]}]})"));
@@ -96,7 +96,7 @@ TEST(SceneIo, MeshFilesUseTheirMaterialCoordinatesAndAreFoundBesideTheScene) {
   EXPECT_GT(scene->cloths[0].material.bending[0][0], 2e-5);
 }
 
-TEST(SceneIo, MaterialsOfEngineeringConstantsAndFlatRestAngles) {
+TEST(SceneIo, ReadsEngineeringConstantsAndFlatRestAngles) {
   const TemporaryFolder folder;
   const auto scene = load(folder.write(
       "a.json", R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "rest_angles": "flat",

@@ -110,7 +110,7 @@ TEST(Shapes, BentGridIsAlmostUnstretched) {
   EXPECT_NEAR(left.z, right.z, 1e-12);
 }
 
-TEST(Shapes, NamedVerticesOfAGrid) {
+TEST(Shapes, VerticesOfAGridHaveNames) {
   const GridMesh grid = make_grid({2, 1, 500});
   const auto only = [&](const char* name) {
     return at(grid.rest, grid_vertices(grid, name).at(0));

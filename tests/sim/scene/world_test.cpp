@@ -84,7 +84,7 @@ std::array<Vec3d, 2> gradient(const World& world, std::size_t f) {
 
 }  // namespace
 
-TEST(World, CountsAndOrder) {
+TEST(World, CountsVerticesFacesAndEdges) {
   const World world = world_of({grid(4, false), folded_pair(0)}, {triangle_obstacle()});
   ASSERT_EQ(world.objects.size(), 3u);
   EXPECT_EQ(world.cloth_vertices, 29);
