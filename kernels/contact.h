@@ -120,7 +120,7 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
       normal = std::fmin(normal, carried + stop);
     }
 
-    // The trial force of Coulomb's projection.
+    // Coulomb's projection starts from a trial force, that of a pair which sticks.
     const Real limit = c.friction * normal;
     const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
     const Vec3r held = tangential(c, c.held), trial = held - k * end;

@@ -86,7 +86,7 @@ Image::Image(int image_width, int image_height) : width(image_width), height(ima
 }
 
 void write_png(const std::string& path, const Image& image) {
-  // Packed in memory first, so that the file is whole or not there.
+  // The picture is packed in memory first, so that the file is whole or not there.
   std::string png;
   const auto append = [](void* text, void* bytes, int count) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(bytes),

@@ -113,7 +113,7 @@ Renderer::Parts::Parts(const World& the_world, VertexOptions options)
       overlay("overlay.vert.glsl", "overlay.frag.glsl"),
       add("screen.vert.glsl", "add.frag.glsl"),
       resolve("screen.vert.glsl", "resolve.frag.glsl") {
-  // The uniform block of the studio, and the layout of the overlay's vertices.
+  // The studio has a uniform block, and the overlay a layout of its vertices.
   glCreateBuffers(1, &studio);
   glNamedBufferStorage(studio, sizeof(StudioBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
   glCreateBuffers(1, &overlay_buffer);
@@ -188,7 +188,7 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   glNamedBufferSubData(studio, 0, sizeof block, &block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, studio);
 
-  // The shadow maps of this sample: one for the key light, and one for the sky where it is sampled.
+  // A sample needs a shadow map for the key light, and one for the sky if that is sampled.
   draw_depth(key_map, key_clip);
   key_map.bind_texture(0);
   if (dome) draw_depth(dome_map, dome_clip);

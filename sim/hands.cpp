@@ -97,7 +97,8 @@ std::int64_t Hands::advance(double dt, const Parameters& parameters,
 }
 
 std::vector<HandSpring> Hands::springs() const {
-  // Several hands on one vertex: the stiffness adds up, the target is their weighted mean.
+  // When several hands hold a vertex, their stiffness adds up and the target is their weighted
+  // mean.
   std::map<Index, HandSpring> by_vertex;
   for (const HeldPatch& h : *held_) {
     for (std::size_t k = 0; k < h.vertices.size(); ++k) {

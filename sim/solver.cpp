@@ -81,7 +81,7 @@ void Topology::upload(const World& world) {
   hinge_count = static_cast<Index>(world.hinges.size());
   median_edge = real(world.median_edge);
 
-  // The mesh, and the measures of its elements at rest.
+  // The mesh comes with the measures of its elements at rest.
   const auto number = [](double v) { return real(v); };
   upload_as(face, world.face, [](const Triangle& t) { return Int3{{t[0], t[1], t[2]}}; });
   upload_as(edge, world.edge, [](const std::array<Index, 2>& e) { return Int2{{e[0], e[1]}}; });
@@ -323,7 +323,7 @@ void Solver::use_hands(std::span<const InputEvent> events, StepReport& report) {
   if (hands_.empty()) return;
   report.limits |= hands_.advance(parameters_.step.time_step, parameters_, watched_positions());
 
-  // The springs of the patches, one at most for each vertex, as the implicit step reads them.
+  // The implicit step reads the springs of the patches, one at most for each vertex.
   upload_as(springs_, hands_.springs(), [](const HandSpring& s) {
     return Spring{s.vertex, real(s.stiffness), to_real(s.target)};
   });

@@ -47,10 +47,11 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
     if (!state_.let_go.empty()) proximity_.add(pinch_.push_outs(step));
   });
 
-  // The candidate, which forces alone decide and which may penetrate.
+  // Forces alone decide the candidate, which may penetrate.
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   report.finite = all_finite(state_);
   if (!report.finite) return false;
+
   // Half the step leaves a quarter of the strain that the linear solve does not see.
   if (implicit_.linearization_error() > parameters_.implicit.max_linearization_error) {
     report.reach(Limit::linearization_error);

@@ -87,7 +87,7 @@ void Commands::add_view() {
   CLI::App* command = add_command("view", "the window", action, &view.simulation);
   add_simulation_options(*command, view.simulation, false);
 
-  // Files that the window writes, how it draws, and how it starts.
+  // The window writes files, and the user chooses how it draws and starts.
   command->add_option("--record", view.record_file, "save the session as a recording at the end");
   command->add_option("--screenshots", view.screenshot_folder, "folder that F12 writes to");
   command
@@ -138,7 +138,7 @@ void Commands::add_render() {
   // The scene, the device and the length of the run before the picture.
   add_simulation_options(*command, render.simulation, true);
 
-  // The picture itself: where it goes, and what it shows how well.
+  // These options say where the picture goes, what it shows and how well.
   command->add_option("--out", render.out, "FILE.png")->capture_default_str();
   command->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--camera", render.camera, "camera of the scene, or FILE.json");

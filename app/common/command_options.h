@@ -38,7 +38,7 @@ inline void add_device_option(CLI::App& command, std::string& device) {
 /// Adds the options to a command; values are checked while the command line is read.
 inline void add_simulation_options(CLI::App& command, SimulationOptions& options,
                                    bool scene_required) {
-  // The scene and the device.
+  // A command names a scene and a device.
   auto* scene = command.add_option(
       "SCENE", options.scene,
       "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "

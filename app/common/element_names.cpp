@@ -132,7 +132,7 @@ std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
   for (const Cloth& cloth : scene.cloths)
     cloth_vertices += static_cast<Index>(cloth.mesh.positions.size());
 
-  // Cloth vertices that collide with a body, and the first body that does.
+  // All cloth vertices that collide with a body are looked at; the message names one body.
   std::set<Index> hit;
   Index body = -1;
   for (const OffendingPair& pair : report.offending) {

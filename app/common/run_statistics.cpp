@@ -113,7 +113,7 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
                       static_cast<long long>(steps_at_limit), name.c_str());
   }
 
-  // The machine and the outcome.
+  // The table ends with the machine and the outcome.
   if (!device_.empty())
     text += formatted("%-22s %12.1f GB/s %s\n", "device", copy_bandwidth_ / 1e9, device_.c_str());
   text += formatted("%-22s %12.1f MB\n", "peak memory", peak_memory_bytes() / 1e6);

@@ -330,8 +330,8 @@ void Session::finish(const StepReport& report) {
     if (reports_.size() > kMaxReports) reports_.pop_front();
   }
 
-  failed_ = !report.accepted;
   // A refused step stops the run, and its reason is shown.
+  failed_ = !report.accepted;
   if (failed_) {
     playing_ = false;
     fail(failure_sentence(report, &simulator_->scene()));
@@ -403,7 +403,7 @@ void Session::publish(bool always) {
   if (!always && now - last_published_ < kPublishInterval) return;
   last_published_ = now;
 
-  // The state, and how it came about.
+  // The reader learns of the state and of how it came about.
   PublishedState& state = published_.back();
   state.step = simulator_->step_index();
   state.time = simulator_->time();
@@ -415,7 +415,7 @@ void Session::publish(bool always) {
   state.scripted = scripted_;
   state.real_time = options_.real_time;
 
-  // Speed and history, and news for the user.
+  // It also gets the speed, the history, and news for the user.
   const std::size_t count = step_ends_.size();
   const double span =
       count < 2 ? 0 : std::chrono::duration<double>(step_ends_.back() - step_ends_.front()).count();

@@ -110,7 +110,7 @@ class Session {
 
   void send(Mail mail);
 
-  // On the solver thread.
+  // These run on the solver thread.
   void run();
   void wait_for_mail(std::vector<Mail>& mail);
   void handle(Command command);
@@ -136,7 +136,7 @@ class Session {
   std::unique_ptr<Simulator> simulator_;
   SessionOptions options_;
 
-  // Shared with the interface thread.
+  // Both threads use these.
   std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<Mail> mailbox_;       ///< under mutex_

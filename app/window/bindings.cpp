@@ -110,7 +110,7 @@ std::string bindings_markdown() {
       "This page is printed by the program from the table that the window works with\n"
       "(`icloth info --keys`); a test keeps the two equal.\n";
 
-  // A heading and a table for each group, in the order of the rows.
+  // Each group has a heading and a table, in the order of the rows.
   std::string_view group;
   for (const Binding& row : kTable) {
     if (row.group != group) {

@@ -66,7 +66,7 @@ void set_colours(ImGuiStyle& style) {
   set(ImGuiCol_ButtonHovered, IM_COL32(58, 66, 80, 255));
   set(ImGuiCol_ButtonActive, IM_COL32(70, 80, 97, 255));
 
-  // Headers and tabs.
+  // Headers and tabs share their colours, of which the chosen tab has the accent.
   set(ImGuiCol_Header, IM_COL32(33, 37, 45, 255));
   set(ImGuiCol_HeaderHovered, IM_COL32(43, 48, 58, 255));
   set(ImGuiCol_HeaderActive, IM_COL32(50, 56, 68, 255));

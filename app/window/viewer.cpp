@@ -205,7 +205,7 @@ void Viewer::draw_scene() {
   const int height = std::max(8, static_cast<int>(view_.height * factor));
   picture_.resize(width, height);
 
-  // The content of the picture: the published state, and the user's marks on it.
+  // The picture shows the published state, and the user's marks on it.
   const std::vector<HandleState> handles = handle_states();
   std::vector<Index> pins;
   for (Index v = 0; v < world_.cloth_vertices; ++v) {
@@ -397,7 +397,7 @@ TestStatus Viewer::test_status() const {
   status.failed = state.failed;
   status.panels = state_.panels;
 
-  // The place of the cloth, for tests that drag it.
+  // Tests that drag the cloth need to know where it is on the screen.
   status.view = {view_.x, view_.y, view_.width, view_.height};
   const std::vector<Vec3d> points = cloth_points();
   for (const Vec3d p : points) status.mean += (1.0 / static_cast<double>(points.size())) * p;

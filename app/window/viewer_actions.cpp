@@ -31,7 +31,7 @@ void Viewer::act(Action action, double amount) {
       state_.view = ViewMode::strain;
       break;
 
-    // The window itself.
+    // These act on the window itself.
     case Action::toggle_panels:
       state_.panels = !state_.panels;
       break;
@@ -294,7 +294,7 @@ void Viewer::draw_menu() {
     drag_.release_all();
   }
 
-  // The point itself, for scripts and reports.
+  // Scripts and reports need the point in numbers.
   if (menu_pick_.reachable()) {
     ImGui::Separator();
     ImGui::TextDisabled("face %d at %.3f, %.3f, %.3f m", menu_pick_.face, menu_pick_.point.x,

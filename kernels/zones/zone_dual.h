@@ -28,8 +28,8 @@ class ZoneDual : public ZoneProblem<Team> {
     double t = 1;
     int k = 0;
     for (; k < set_.iterations; ++k) {
-      // A projected gradient step from the extrapolated multipliers; when it changes no gap any
-      // more, its result is the answer.
+      // A projected gradient step starts from the extrapolated multipliers. When it changes no gap
+      // any more, its result is the answer.
       positions(y_);
       const Step step = project();
       if (step.largest <= set_.tolerance) {
@@ -37,7 +37,7 @@ class ZoneDual : public ZoneProblem<Team> {
         break;
       }
 
-      // Nesterov's extrapolation, which starts again where it points uphill.
+      // Nesterov's extrapolation starts again when it points uphill.
       const bool uphill = step.momentum > 0;
       const double next = uphill ? 1 : 0.5 * (1 + std::sqrt(1 + 4 * t * t));
       const Real beta = uphill ? Real(0) : static_cast<Real>((t - 1) / next);

@@ -179,6 +179,7 @@ std::string CudaWriter::pack(const DevicePositions& from) {
   // The solver may write again when the kernel has read.
   failure = failure_of("recording the end of reading",
                        cudaEventRecord(static_cast<cudaEvent_t>(from.read), stream_));
+
   // Without the event nobody could wait for the kernel, so it is waited for here.
   if (!failure.empty()) static_cast<void>(cudaStreamSynchronize(stream_));
   return failure;

@@ -109,7 +109,7 @@ void BodySurface::link_edges() {
       const std::array<Index, 2> ends{std::min(a, b), std::max(a, b)};
       const auto [place, is_new] = known.try_emplace(ends, edges_.size());
 
-      // Of three or more faces at an edge the first one and the last one are kept.
+      // An edge with three or more faces keeps the first one and the last one.
       if (is_new)
         edges_.push_back({ends, {f, -1}});
       else
@@ -126,7 +126,7 @@ FaceCorners BodySurface::corners(std::span<const Vec3d> x, Index face) const {
 double BodySurface::winding(std::span<const Vec3d> x, Vec3d p) const {
   double sum = 0;
   for (Index f = first_face_; f < last_face_; ++f) {
-    // Half the solid angle of a face, after van Oosterom and Strackee 1983.
+    // Half the solid angle of each face is summed up, after van Oosterom and Strackee 1983.
     const FaceCorners t = corners(x, f);
     const Vec3d a = t[0] - p, b = t[1] - p, c = t[2] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);

@@ -237,7 +237,7 @@ struct TestItem {
     const Index first = cell_first[c];
     const auto cell = pairs.cell({element, first, cell_first[c + 1]});
 
-    // The item's share of the cell's tests.
+    // A work item makes its share of the cell's tests.
     const std::int64_t begin = static_cast<std::int64_t>(item - item_first[c]) * kTestsPerItem;
     const std::int64_t all = pairs.tests(cell);
     const std::int64_t end = begin + kTestsPerItem < all ? begin + kTestsPerItem : all;

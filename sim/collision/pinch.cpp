@@ -206,7 +206,7 @@ const Array<Contact>& Pinch::push_outs(const SubstepContext& step) {
   std::vector<Contact> contacts;
   std::map<std::pair<Index, Index>, Index> faces;  // side by body and cloth face
 
-  // Vertices, along the normal of the nearest point of the body.
+  // Vertices are pushed along the normal of the nearest point of the body.
   for (const LetGo& entry : step.state.let_go.download()) {
     const auto [v, object, side] = entry;
     for (const Index f : faces_of(v)) faces[{object, f}] = side;
@@ -221,7 +221,7 @@ const Array<Contact>& Pinch::push_outs(const SubstepContext& step) {
                                 world_->area[at(v)], h));
   }
 
-  // Faces that an edge of the body goes through, where it does.
+  // A face is pushed where an edge of the body goes through it.
   for (const auto& [key, side] : faces) {
     const auto [object, f] = key;
     const Triangle& t = world_->face[at(f)];

@@ -86,8 +86,7 @@ struct ContactMaker {
       c.gap = dot(c.normal, g);
     }
 
-    // The motion that is foreseen includes the fall of free vertices. Pairs that cannot move are
-    // left out.
+    // The expected motion includes the fall of free vertices. Pairs that cannot move are left out.
     Vec3r relative{};
     Real mobility = 0;
     for (int a = 0; a < 4; ++a) {

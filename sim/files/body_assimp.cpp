@@ -166,14 +166,14 @@ Body read_with_assimp(const std::string& path) {
   importer.SetIOHandler(new FilesOfFolder(path));  // the importer deletes it
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
 
-  // A lack of memory is told apart, because it is no fault in the file's format.
+  // A lack of memory has its own message, because it is no fault in the file's format.
   if (!scene || !scene->mRootNode) {
     const std::string reason = importer.GetErrorString();
     if (reason.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
     throw InputError(shown_path(path) + ": cannot be read as a body (" + excerpt(reason) + ")");
   }
 
-  // The meshes, where the nodes put them and the skins bend them.
+  // The nodes place the meshes, and the skins bend them.
   NodePoses poses;
   collect_poses(*scene->mRootNode, aiMatrix4x4(), poses);
   Body body;

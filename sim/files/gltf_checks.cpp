@@ -152,6 +152,7 @@ class GltfChecker {
         its_parent = n;
       }
     }
+
     // depth[n] counts the nodes from the root down to n; 0 means that it is not known yet.
     std::vector<std::size_t> depth(nodes.size(), 0);
 

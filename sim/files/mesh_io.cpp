@@ -68,7 +68,7 @@ void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name) {
 
 void check_edges(const TriangleMesh& mesh, const std::string& name,
                  std::span<const Index> numbers) {
-  // Edges sorted by their vertices: those of one edge stand together.
+  // After sorting by vertices, all sides of one edge stand together.
   std::vector<std::array<Index, 2>> edges;
   edges.reserve(3 * mesh.faces.size());
   for (const Triangle& t : mesh.faces)

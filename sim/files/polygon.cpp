@@ -299,7 +299,7 @@ void cut_like(const MeshFile& pattern, MeshFile& file) {
   for (const FilePolygon& polygon : file.polygons) {
     const std::size_t first = at(polygon.first_face), end = first + at(polygon.face_count);
 
-    // Texture coordinates of the corners, by vertex.
+    // Texture coordinates belong to corners, which are found by their vertices.
     std::vector<std::pair<Index, Vec2d>> uv;
     for (std::size_t f = first; f < end && !file.mesh.uv.empty(); ++f)
       for (std::size_t c = 0; c < 3; ++c)

@@ -53,7 +53,7 @@ Character first_character(std::string_view text) {
     code = code << 6 | (static_cast<unsigned char>(text[k]) & 0x3F);
   }
 
-  // Longer than needed, half a surrogate pair, or beyond Unicode.
+  // A code is invalid when it is longer than needed, half a surrogate pair, or beyond Unicode.
   constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
   const bool valid =
       code >= kSmallest[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
@@ -157,7 +157,7 @@ std::string brief_number(double value) {
     return text;
   }
 
-  // Very small and very large ones: 4e-04 → 4e-4, 2e+05 → 2e5.
+  // Very small and very large values keep one digit: 4e-04 becomes 4e-4, and 2e+05 becomes 2e5.
   std::snprintf(text, sizeof text, "%.0e", value);
   std::string out = text;
   const std::size_t e = out.find('e');
@@ -172,7 +172,7 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
   std::string_view best;
   std::size_t smallest = 0;
 
-  // Of names that are equally near the first one wins.
+  // When several names are equally near, the first one wins.
   for (std::string_view candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);
     if (!best.empty() && distance >= smallest) continue;

@@ -102,7 +102,7 @@ bool snap_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, double distance
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
 
-    // The nearest vertex that keeps its place; the first one where two are as near.
+    // The vertex moves to the nearest one that keeps its place, the first one of two as near.
     const Vec3d start = scaled(mesh.positions[v]), flat = scaled(rest[v]);
     Index nearest = kNone;
     double smallest = distance;

@@ -136,7 +136,7 @@ class XmlChecker {
         auto& [node, next] = stack.back();
         mark[node] = Mark::open;
 
-        // First all children; one that is still open holds this node.
+        // All children come first; one that is still open holds this node.
         if (next < graph_.children[node].size()) {
           const std::size_t child = graph_.children[node][next++];
           if (mark[child] == Mark::open) refuse(child, "contains itself, expected a tree of nodes");

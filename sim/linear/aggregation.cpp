@@ -31,6 +31,7 @@ class Growth {
   Aggregation run() {
     for (Index i = 0; i < graph_.size(); ++i) {
       seeds_.push_back(i);
+
       // Nodes next to a finished group come first, in the order in which they were met.
       for (; next_seed_ < seeds_.size(); ++next_seed_)
         if (free(seeds_[next_seed_])) grow(seeds_[next_seed_]);

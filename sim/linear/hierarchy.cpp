@@ -239,8 +239,7 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
     else
       for (const Index g : groups.group) layout.parent.push_back(layout.nodes() + g);
 
-    // The lists that the kernels follow: children of each node, sources of each block, and the
-    // pattern.
+    // Kernels follow these lists: children of each node, sources of each block, and the pattern.
     append_places(groups.group, groups.count, finer_node, layout.child_first, layout.child);
     layout.append_sources(fine_first, fine_column, finer_block, groups.group, first, columns);
     layout.append_pattern(first, columns);
@@ -269,7 +268,7 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
 
 void Hierarchy::fill_matrix(const SystemView& system) {
   for (int l = 0; l < levels_; ++l) {
-    // The finest level sums up the blocks of the system, the others those of the level before.
+    // The finest level sums up the blocks of the system, every other one those of the level before.
     CoarseBlocks sum{.row = vertex_row_.view(),
                      .column = system.column,
                      .entries = system.entries,

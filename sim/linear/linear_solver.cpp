@@ -114,7 +114,7 @@ struct ConjugateGradients {
     const Index n = b.size();
     const double bb = lengths.bb;
 
-    // The first residual, for which a start from zero saves a product.
+    // The first residual is b when the start is zero, which saves a product.
     LinearSolution result;
     if (lengths.xx == 0)
       team.for_each(n, [&](Index i) { q[i] = Vec3r{}; });

@@ -116,7 +116,8 @@ struct PlatePass {
       end[a] = motion[h].angle + motion[h].turn;
     }
 
-    // Elastic torques, then those of the friction. Its moment ends at HB, so it is not damped.
+    // The friction of the yarns follows the elastic torques. It is not damped, as its moment ends
+    // at HB.
     const PlateModuli moduli = plate_moduli(cloth, plate_curvature(p, start));
     PlateTerm t{};
     add(t, i, moduli, plate_moment(moduli, plate_curvature(p, end)),

@@ -24,7 +24,7 @@ void add_strain_limit(Fabric& f, const Material& material, const Parameters& p) 
 }
 
 Fabric make_fabric(const Material& material, const Parameters& p) {
-  // The measured tables, scaled.
+  // The scales of the parameters multiply the measured tables.
   Fabric f{};
   for (std::size_t row = 0; row < 6; ++row)
     for (std::size_t c = 0; c < 4; ++c)
@@ -59,7 +59,7 @@ bool has_yarn_friction(const Fabric& f) { return f.bending_friction > 0 || f.she
 }  // namespace
 
 void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parameters) {
-  // One fabric a cloth.
+  // Each cloth has a fabric of its own.
   std::vector<Fabric> fabrics;
   for (const Cloth& cloth : scene.cloths)
     fabrics.push_back(make_fabric(cloth.material, parameters));

@@ -137,7 +137,7 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
                        .point = start,
                        .free_motion = free_motion};
 
-  // Newton's method: later ones linearise at the candidate, until the tension is accurate.
+  // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
   for (int iteration = 1;; ++iteration) {
     assembly_.assemble(context);
     ++step.report.newton_iterations;

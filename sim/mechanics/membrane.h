@@ -24,7 +24,7 @@ struct MembraneShare {
     const Stiffness k = stiffness_at(f.fabric, start_strain);
     const StrainLimit limit = strain_limit(f.fabric, f.strain);
 
-    // Stress of the fabric and of the friction between its yarns.
+    // The stresses of the fabric and of the friction between its yarns make one force.
     Sym2 elastic = stress(k, f.strain);
     if (limit.active) elastic = elastic + limit_stress(limit);
     const ShearFriction::Law held = friction.law(f, point);

@@ -123,7 +123,7 @@ double gain2(const Matrix& middle, const Matrix& w) {
 /// W of a face from the angles of quadratics on its three edges.
 std::array<double, 9> plate_operator(const std::array<FlatEdge, 3>& edges, double area,
                                      const Matrix& exact, const FacePlate& plate) {
-  // The mid-edge operator, from the edges of the face alone.
+  // The mid-edge operator follows from the edges of the face alone.
   Matrix middle_w;
   for (std::size_t a = 0; a < 3; ++a) {
     const Vec2d n = edges[a].outward;
@@ -134,7 +134,7 @@ std::array<double, 9> plate_operator(const std::array<FlatEdge, 3>& edges, doubl
   }
   const Matrix middle = inverse(middle_w);
 
-  // Mixed with the exact one, with the smallest share that does not amplify single angles.
+  // The exact operator is mixed in with the smallest share that does not amplify single angles.
   Matrix w{};
   for (const double share : kShares) {
     Matrix m;

@@ -29,7 +29,7 @@ inline std::vector<Real> outward_sides(const World& world) {
     return f;
   };
 
-  // The sides of all faces, with those along the same edge next to each other.
+  // Sorting the sides of all faces brings those along the same edge together.
   struct Side {
     Index low, high, face;
     bool forward;

@@ -116,7 +116,7 @@ std::string unit_note(const std::string& object, const std::vector<Vec3d>& posit
   constexpr Unit kTooSmall[] = {{"100 m", 100}, {"kilometres", 1000}};
   if (positions.empty()) return "";
 
-  // The size along the axes.
+  // The size is measured along the axes.
   Vec3d low = positions.front(), high = low;
   for (const Vec3d p : positions) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -128,7 +128,7 @@ std::string unit_note(const std::string& object, const std::vector<Vec3d>& posit
   const bool too_large = largest > kLargest && (is_cloth || smallest > kThick);
   if (!too_large && (largest >= kSmallest || largest == 0)) return "";
 
-  // Units in which it would have the size of a garment or of a person, the likeliest first.
+  // These units give it the size of a garment or of a person, the likeliest first.
   std::string units, factor, result;
   const std::span<const Unit> known = too_large ? std::span<const Unit>(kTooLarge) : kTooSmall;
   for (const Unit& unit : known) {

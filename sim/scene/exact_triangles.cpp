@@ -249,7 +249,8 @@ bool triangles_meet(const FaceCorners& s, const FaceCorners& t) {
 }
 
 bool point_meets(Vec3d p, const FaceCorners& t) {
-  // Seen along an axis first: that costs less, and most points lie beside the triangle.
+  // The test along an axis comes first, since it costs less and most points lie beside the
+  // triangle.
   const int axis = axis_of(t);
   return axis >= 0 && contains(t, p, axis) && exact_side(t[0], t[1], t[2], p) == 0;
 }

@@ -109,7 +109,7 @@ std::vector<Index> grid_vertices(const GridMesh& grid, std::string_view name) {
   const auto last = [&](std::size_t row) { return grid.row[row + 1] - 1; };
   const auto middle = [&](std::size_t row) { return first(row) + (last(row) - first(row)) / 2; };
 
-  // Single vertices, most of which end or halve a row.
+  // Single vertices end or halve a row.
   if (name == "bottom_left") return {first(0)};
   if (name == "bottom_right") return {last(0)};
   if (name == "top_left") return {first(rows - 1)};
@@ -120,7 +120,7 @@ std::vector<Index> grid_vertices(const GridMesh& grid, std::string_view name) {
   if (name == "top_middle") return {middle(rows - 1)};
   if (name == "center") return {middle(rows / 2)};
 
-  // Whole borders: the first or last row, or the first or last vertex of each row.
+  // A whole border is the first or last row, or the first or last vertex of each row.
   std::vector<Index> border;
   if (name == "bottom" || name == "top") {
     const std::size_t row = name == "top" ? rows - 1 : 0;

@@ -120,7 +120,7 @@ StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {
     held.resize(positions.size(), static_cast<std::uint8_t>(number < 0));
   };
 
-  // Cloths first, then obstacles where they are at time 0.
+  // Cloths come first, then obstacles where they are at time 0.
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const std::size_t first = positions.size();
     append(scene.cloths[c].mesh, scene.cloths[c].mesh.positions, static_cast<int>(c));

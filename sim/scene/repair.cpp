@@ -93,7 +93,7 @@ StartRepair repair_start(Scene& scene, double limit) {
     best = mesh.x;
   }
 
-  // Room for the first step also where a border lies beside the other sheet.
+  // The first step needs room also where a border lies beside the other sheet.
   if (result.pairs_left == 0 && result.pairs_before > 0) {
     move_apart(mesh, contours, offset, limit, true);
     if (!intersections(mesh).empty()) mesh.x = best;

@@ -66,7 +66,7 @@ Vec3d pseudo_normal(const RepairMesh& mesh, Index face, const std::array<double,
 }  // namespace
 
 RepairMesh::RepairMesh(const Scene& scene) {
-  // Cloths first, then obstacles where they are at time 0.
+  // Cloths come first, then obstacles where they are at time 0.
   for (const Cloth& cloth : scene.cloths) {
     const std::size_t first = x.size();
     add(cloth.mesh.positions, cloth.mesh.faces, 0);
@@ -79,7 +79,7 @@ RepairMesh::RepairMesh(const Scene& scene) {
   }
   start = x;
 
-  // The neighbourhoods, which turning a face changes only by the order of its edges.
+  // Turning a face changes the neighbourhoods only by the order of its edges.
   make_edges();
   turn_faces();
 }
@@ -95,7 +95,7 @@ void RepairMesh::add(const std::vector<Vec3d>& positions, const std::vector<Tria
 }
 
 void RepairMesh::make_edges() {
-  // Every side of every face, sorted by its vertices, so that equal ones are neighbours.
+  // The sides of all faces are sorted by their vertices, so that equal ones are neighbours.
   struct Side {
     std::array<Index, 2> vertices;
     Index face, k;
@@ -192,7 +192,7 @@ SurfacePoint walk_to_closest(const RepairMesh& mesh, Vec3d p, Index from) {
     return closest_point_triangle(p, c[0], c[1], c[2]);
   };
 
-  // From face to face as long as one around the present face is closer.
+  // The walk goes from face to face as long as one around the present face is closer.
   Index face = from;
   TrianglePoint<double> best = closest_in(face);
   for (bool moved = true; moved;) {

@@ -42,7 +42,8 @@ class Collector {
         moving_(mesh.x.size(), 0) {}
 
   std::vector<GapConstraint> run() {
-    // The parts of the sheets near each contour, then the vertices of them against their sides.
+    // The parts of the sheets near each contour are found first, since edges need those of both
+    // sheets.
     for (std::size_t c = 0; c < contours_.size(); ++c)
       if (contours_[c].side.sign != 0) add_vertices(c);
     for (std::size_t c = 0; c < contours_.size(); ++c)
@@ -63,7 +64,8 @@ class Collector {
     const Side& side = contours_[c].side;
     const auto number = static_cast<Index>(c);
 
-    // The own region: the contour, the wrong vertices, and one ring of faces around them.
+    // The region on this sheet has the contour, the wrong vertices, and one ring of faces around
+    // them.
     std::vector<std::pair<Index, Index>> seeds;
     for (const Contour::Segment& s : contour.segments)
       for (const Index v : mesh_.faces[at(s.own)]) seeds.emplace_back(v, s.other);
@@ -121,7 +123,7 @@ class Collector {
     const SidedContour& twin = contours_[own.contour.twin];
     if (twin.side.sign != 0 && own.contour.twin < c) return;  // done from there
 
-    // The edges of the other sheet, in a tree.
+    // A tree of the edges of the other sheet finds those that are near.
     std::vector<Index> others;
     std::vector<Box> boxes;
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
@@ -149,7 +151,7 @@ class Collector {
     const auto [c, d] = mesh_.edges[at(f)];
     if (a == c || a == d || b == c || b == d) return;
 
-    // The points where the edges pass each other, both within the edges.
+    // The edges have to pass each other within both of them.
     const Vec3d u = mesh_.position(b) - mesh_.position(a);
     const Vec3d v = mesh_.position(d) - mesh_.position(c);
     const Vec3d from = mesh_.position(c) - mesh_.position(a), n = cross(u, v);
@@ -158,7 +160,7 @@ class Collector {
     const double s = dot(cross(from, v), n) / nn, r = dot(cross(from, u), n) / nn;
     if (!(s > 0 && s < 1 && r > 0 && r < 1)) return;
 
-    // Their common normal, from f to where e has to be.
+    // The common normal points from f to where e has to be.
     Vec3d normal = normalized(n);
     if (dot(normal, double(sign) * mesh_.edge_normal(f)) < 0) normal = -normal;
     if (!in_reach(-dot(normal, from), depth) || !in_cone(f, double(sign) * normal)) return;
@@ -185,13 +187,13 @@ class Collector {
       if (c.side.sign != 0) reach = std::max(reach, c.side.depth);
     reach = 2 * reach + 3 * offset_;
 
-    // The vertices that may move, with one ring more than the regions have.
+    // The vertices that may move have one ring more than the regions.
     std::vector<std::uint8_t> moving = moving_;
     for (const Triangle& t : mesh_.faces)
       if (std::ranges::any_of(t, [&](Index v) { return moving_[at(v)] != 0; }))
         for (const Index v : t) moving[at(v)] = 1;
 
-    // Boxes of all elements; a pair is looked for from the moving one, or from the first of two.
+    // A pair is looked for from its moving element, or from the first one of two.
     std::vector<Box> vertex_boxes, edge_boxes, face_boxes;
     for (const Vec3d& p : mesh_.x) vertex_boxes.push_back({p, p});
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
@@ -299,7 +301,7 @@ class Collector {
 std::vector<Vec3d> smallest_moves(std::span<const GapConstraint> constraints,
                                   std::span<const double> missing, std::span<const double> ease,
                                   double tolerance) {
-  // How much a unit of multiplier opens the gap.
+  // The response is how much a unit of multiplier opens the gap.
   std::vector<Vec3d> move(ease.size());
   std::vector<double> multiplier(constraints.size(), 0), response(constraints.size(), 0);
   for (std::size_t i = 0; i < constraints.size(); ++i)

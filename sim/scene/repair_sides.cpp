@@ -52,7 +52,7 @@ double pair_depth(const RepairMesh& mesh, Index f, Index g, int sign) {
     least = std::min(least, high - low);
   };
 
-  // The normals of the faces, and the common normals of their edges.
+  // Triangles separate along the normal of a face or a common normal of their edges.
   try_direction(mesh.normal(f));
   try_direction(mesh.normal(g));
   for (std::size_t i = 0; i < 3; ++i)
@@ -219,7 +219,7 @@ struct Cost {
 
 std::vector<Side> choose_sides(const RepairMesh& mesh, std::span<const Contour> contours,
                                double limit) {
-  // Both possible sides of every view, with the regions that would have to move.
+  // Every view has two possible sides, each with the regions that would have to move.
   Fills fills(contours.size());
   for (std::size_t c = 0; c < contours.size(); ++c)
     fills[c] = {fill_regions(mesh, contours[c], 1, limit),

@@ -43,7 +43,7 @@ void note_clips(const Body& body, const std::string& file, const std::string& ob
     return;
   }
 
-  // The first few by name, each with its length.
+  // The first few clips are named, each with its length.
   std::string names;
   for (std::size_t i = 0; i < std::min(body.clips.size(), kMostNamed); ++i) {
     const BodyClip& clip = body.clips[i];

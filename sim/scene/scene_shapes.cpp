@@ -42,8 +42,8 @@ TriangleMesh parse_funnel(const JsonValue& value, Index most_triangles) {
   shape.edge = object.number("edge", shape.edge, kSize);
   object.finish();
 
-  // Both sides of the cone and of the pipe, and the two rims; each of these pieces and each ring is
-  // rounded to whole edges, a ring to six at least.
+  // Both sides of the cone and of the pipe and the two rims are meshed. Each of these pieces and
+  // each ring is rounded to whole edges, a ring to six at least.
   const double slope = std::hypot(shape.top_radius - shape.bottom_radius, shape.cone_height);
   const double outline = 2 * (slope + shape.pipe_length + shape.wall);
   const double widest = std::max(shape.top_radius, shape.bottom_radius) + shape.wall;

@@ -22,13 +22,13 @@ class NeighbourTest {
       : x_(positions), faces_(faces) {}
 
   void run(Index a, Index b, std::vector<Touch>& found) const {
-    // Vertices of the one on the other.
+    // Vertices of each face may lie on the other one.
     const std::size_t before = found.size();
     vertices_on_face(a, b, found);
     vertices_on_face(b, a, found);
     if (found.size() > before) return;
 
-    // Edges that cross; edges that meet at a vertex were found as that vertex.
+    // Edges may cross; those that meet at a vertex were found as that vertex.
     const Triangle &s = faces_[at(a)], &t = faces_[at(b)];
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) {
@@ -73,7 +73,7 @@ class NeighbourTest {
 std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
                                             std::span<const Triangle> faces,
                                             std::span<const int> group) {
-  // The faces of every vertex.
+  // Every vertex gets a list of its faces.
   std::vector<Index> first(positions.size() + 1, 0), around(3 * faces.size());
   for (const Triangle& t : faces)
     for (const Index v : t) ++first[at(v) + 1];
@@ -82,7 +82,8 @@ std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const Index v : faces[f]) around[at(next[at(v)]++)] = static_cast<Index>(f);
 
-  // Every pair of neighbours once: from its first face, at the first vertex that both have.
+  // Every pair of neighbours is tested once: from its first face, at the first vertex that both
+  // have.
   const NeighbourTest test(positions, faces);
   std::vector<Touch> found;
   std::mutex lock;  // the order of arrival is undone by the sort below

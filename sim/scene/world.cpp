@@ -89,7 +89,7 @@ bool uv_is_metric(const Cloth& cloth) {
 /// Direction of weft in the plane of a rest triangle, before it is projected and normalized.
 Vec3d weft_direction(const Cloth& cloth, std::size_t f, const std::array<Vec3d, 3>& x, Vec3d n) {
   if (!cloth.mesh.uv.empty()) {
-    // The direction in which v stays and u grows.
+    // Weft is the direction in which v stays and u grows.
     const Corners& u = cloth.mesh.uv[f];
     const Vec2d a = u[1] - u[0], b = u[2] - u[0];
     const double det = cross2(a, b);

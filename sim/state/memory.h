@@ -127,24 +127,24 @@ struct MemoryPart {
 /// holds. This is the only list of it.
 template <class Visit, class... Memory>
 void for_each_part(const Visit& visit, Memory&... m) {
-  // The time, and the positions and velocities that were reached.
+  // The time, the positions and the velocities are those that the last step reached.
   visit(MemoryPart{"step", Extent::single}, m.step...);
   visit(MemoryPart{"time", Extent::single}, m.time...);
   visit(MemoryPart{"x1", Extent::vertices}, m.x1...);
   visit(MemoryPart{"v", Extent::vertices}, m.v...);
 
-  // The friction of contacts, and the last step as integrators of two steps need it.
+  // The friction of contacts goes on, and integrators of two steps need the step before.
   visit(MemoryPart{"held", Extent::any}, m.held...);
   visit(MemoryPart{"past.motion", Extent::cloth_vertices, true}, m.past.motion...);
   visit(MemoryPart{"past.change", Extent::cloth_vertices, true}, m.past.change...);
   visit(MemoryPart{"past.dt", Extent::single}, m.past.dt...);
 
-  // The yarns' anchors, and the gaps with which layers started.
+  // The yarns' anchors and the gaps with which layers started also go on from step to step.
   visit(MemoryPart{"yarns", Extent::cloth_faces, true}, m.yarns...);
   visit(MemoryPart{"yarns_bend", Extent::single}, m.yarns_bend...);
   visit(MemoryPart{"start_gap", Extent::cloth_vertices, true}, m.start_gap...);
 
-  // The boxes of the candidate lists, the vertices let go from bodies, and the hands.
+  // The rest are the boxes of the candidate lists, the vertices let go from bodies, and the hands.
   visit(MemoryPart{"trusted", Extent::vertices, true}, m.trusted...);
   visit(MemoryPart{"trusted_complete", Extent::single}, m.trusted_complete...);
   visit(MemoryPart{"let_go", Extent::any}, m.let_go...);

@@ -122,7 +122,7 @@ int run_ccd(const std::string& file, const std::string& prediction_file) {
     const bool is_hit = timed_test(q, overhead, hit, tally);
     count(q, is_hit, tally);
 
-    // The line of the query in the prediction file.
+    // Each query has its line in the prediction file.
     if (!predictions) continue;
     char line[40] = "0\n";
     if (is_hit) std::snprintf(line, sizeof line, "1 %.17g\n", hit.toi);

@@ -38,7 +38,7 @@ void print_profile(const RunStatistics& statistics) {
   std::sort(rows.begin(), rows.end(),
             [](const ProfileRow& a, const ProfileRow& b) { return a.ms > b.ms; });
 
-  // The bytes that the solver moved at least, over all steps.
+  // The solver has moved these bytes at least, over all steps.
   double solver_bytes = 0;
   for (const StepReport& report : statistics.reports()) solver_bytes += report.cg_bytes;
   const double steps = std::max<double>(1, static_cast<double>(statistics.steps()));

@@ -46,13 +46,13 @@ std::vector<Setting> settings(const TrialScene& scene) {
       list.push_back({knob, value, {std::string(parameter) + "=" + value}});
   };
 
-  // The time step and the integrator.
+  // The time step and the integrator decide how the motion is resolved in time.
   add("time step", "step.time_step", {"0.02", "0.005", "0.0025"});
   for (const char* dt : {"0.02", "0.01", "0.005", "0.0025"})
     list.push_back(
         {"BDF2, time step", dt, {std::string("step.time_step=") + dt, "implicit.integrator=bdf2"}});
 
-  // The solves of the implicit step.
+  // These settings decide how exactly the implicit step is solved.
   add("Newton iterations", "implicit.newton_iterations", {"1", "2", "3"});
   list.push_back({"Newton iterations",
                   "20, to 0.1 N/m",
@@ -61,7 +61,7 @@ std::vector<Setting> settings(const TrialScene& scene) {
   add("CG tolerance", "implicit.cg_tolerance", {"0.1", "0.03", "0.01", "0.001", "0.0001"});
   add("preconditioner", "implicit.preconditioner", {"block_jacobi", "multilevel"});
 
-  // The handling of contacts.
+  // These settings belong to the handling of contacts.
   add("contact passes", "implicit.contact_passes", {"1", "2", "3"});
   add("contact tolerance", "implicit.contact_tolerance", {"0.1", "0.01", "0.0001"});
   add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});

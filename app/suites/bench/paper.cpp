@@ -204,7 +204,7 @@ void show_iterations(const Frames& frames, Report& report) {
             .y_label = "ms",
             .series = {{"impact_zones", {}}}};
 
-  // Two plots over the steps, and the extremes for the table.
+  // The plots go over the steps, and the table needs the extremes.
   double rounds = 0, most_rounds = 0, most_iterations = 0;
   for (const StepReport& step : frames.reports()) {
     const auto x = static_cast<double>(step.step);

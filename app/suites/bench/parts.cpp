@@ -40,7 +40,7 @@ std::vector<Part> parts(const Scene& whole) {
          s.parameters.proximity.friction_obstacle = 0.3;
        }},
 
-      // More layers, and the friction inside the fabric.
+      // More layers follow, and at last the friction inside the fabric.
       {"second sheet",
        [cloths](Scene& s) {
          s.cloths = {cloths[2], cloths[1]};

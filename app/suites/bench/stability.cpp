@@ -56,7 +56,7 @@ Json describe(const Case& test, Build build, const CaseResult& r) {
   json["finite"] = r.finite;
   json["seconds"] = r.seconds;
 
-  // The verdict.
+  // The verdict tells which requirements were missed.
   json["passed"] = r.passed();
   json["failures"] = r.failures;
   json["note"] = r.note;

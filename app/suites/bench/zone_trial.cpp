@@ -96,7 +96,7 @@ class Trial {
     vertex_first_.upload(std::vector<Index>{0, nv_});
     constraint_first_.upload(std::vector<Index>{0, nc_});
 
-    // Equal masses, and no multipliers from an earlier round.
+    // All vertices have one mass, and no multipliers come from an earlier round.
     mass_.resize(nv_);
     mass_.fill(Real(5e-6));
     for (Array<Vec3r>* a : {&before_, &direction_}) a->resize(nv_);

@@ -98,7 +98,7 @@ std::string Plot::svg() const {
   x.finish();
   y.finish();
 
-  // The frame and the grid.
+  // The frame and the grid are drawn first, below the data.
   std::string out = format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
@@ -132,7 +132,7 @@ std::string Plot::svg() const {
     out += label(kWidth - 162, row, "text-anchor=\"start\"", series[k].name);
   }
 
-  // The title and the names of the axes.
+  // The title and the names of the axes stand around the frame.
   out += label(to_x(0.5), 20, "text-anchor=\"middle\" font-size=\"14\"", title);
   out += label(to_x(0.5), kHeight - 12, "text-anchor=\"middle\"", x_label);
   out += "<g transform=\"translate(16," + format("%.1f", kHeight / 2) + ") rotate(-90)\">" +

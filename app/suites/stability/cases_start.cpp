@@ -37,13 +37,13 @@ std::string millimetres(double length) { return std::to_string(1e3 * length) + "
 }  // namespace
 
 void start_intersection(CaseRun& run) {
-  // Cloth through cloth.
+  // Cloth goes through cloth.
   auto sheets = new_scene("crossing sheets", 0.03);
   sheets->cloths = {lying_sheet(0.3, 200, {}), hanging_sheet(0.3, 200, {0.01, 0.013, 0.007})};
   const std::size_t cloth = start_pairs(*sheets, run);
   run.require(cloth > 0, "crossing sheets are found");
 
-  // Cloth through a body.
+  // Cloth goes through a body.
   auto ball = new_scene("sheet through a ball", 0.03);
   ball->cloths = {lying_sheet(0.3, 200, {})};
   ball->obstacles = {make_body(make_sphere(0.1, 320), {0, 0.03, 0})};

@@ -62,7 +62,7 @@ Cloth make_tube(double top, double bottom, double length, Index triangles) {
     return Vec2d{turn * around, -length * row / rows};
   };
 
-  // Rings of vertices, every second one turned by half a column; the first ring is pinned.
+  // Every second ring of vertices is turned by half a column, and the first ring is pinned.
   for (Index row = 0; row <= rows; ++row) {
     const double s = static_cast<double>(row) / rows, radius = top + s * (bottom - top);
     for (Index i = 0; i < columns; ++i) {
@@ -74,7 +74,7 @@ Cloth make_tube(double top, double bottom, double length, Index triangles) {
       for (Index i = 0; i < columns; ++i) cloth.pins.push_back(i);
   }
 
-  // Two triangles for every vertex of a row, with material coordinates that do not wrap round.
+  // Every vertex of a row has two triangles, whose material coordinates do not wrap round.
   for (Index row = 0; row < rows; ++row) {
     const Index upper = row * columns, lower = upper + columns, odd = row % 2;
     for (Index i = 0; i < columns; ++i) {

@@ -23,7 +23,7 @@ Cloth ring_cloth(double edge, const Material& material, int specimen) {
   cloth.name = "specimen";
   cloth.material = material;
 
-  // The rings of vertices.
+  // The cloth consists of rings of vertices.
   const auto rings = static_cast<Index>(std::lround((kSpecimen - kDisc) / edge)) + 1;
   const double step = (kSpecimen - kDisc) / (rings - 0.5);
   struct Ring {

@@ -147,7 +147,7 @@ void sliding(CaseRun& run, Ground ground) {
 
   const std::vector<double> frictions = run.brief() ? std::vector{0.3} : std::vector{0.1, 0.2, 0.3};
   for (const double friction : frictions) {
-    // Against the continuous formula, for several coefficients.
+    // Several coefficients are compared with the continuous formula.
     Patch patch;
     patch.ground = ground;
     patch.friction = friction;
@@ -157,7 +157,7 @@ void sliding(CaseRun& run, Ground ground) {
                 0.01);
   }
 
-  // Against the formula of backward Euler, for several time steps.
+  // Several time steps are compared with the formula of backward Euler.
   Patch patch;
   patch.ground = ground;
   for (const int rate : {50, 100, 400}) {
@@ -168,7 +168,7 @@ void sliding(CaseRun& run, Ground ground) {
                 0.01);
   }
 
-  // The same for several meshes of the patch and of the ground.
+  // The result must not depend on the meshes of the patch and of the ground.
   patch.dt = 0.005;
   for (const Index rows : {2, 8, 16}) {
     if (run.brief() && rows == 16) continue;

@@ -169,7 +169,7 @@ void string_frequencies(CaseRun& run) {
 
   const std::vector<Vec3d>& rest = scene->cloths[0].rest;
 
-  // The tension in rest coordinates, which the frequencies follow from.
+  // The frequencies follow from the tension in rest coordinates.
   const double tension = tensile * (stretch * stretch - 1) / 2;
   for (int n = 1; n <= (run.brief() ? 2 : 3); ++n) {
     run.start(scene);

@@ -173,7 +173,7 @@ void oscillator(CaseRun& run) {
   const double density = 0.2, tensile = 40, poisson = 0.25, modulus = 1e-5;
   const Tip tip = one_free_vertex(plain_fabric(tensile, poisson, density, modulus));
 
-  // The stiffnesses of the three motions.
+  // Each of the three motions has a stiffness of its own.
   const double h2m = tip.height * tip.height * density * tip.area / 3;
   const double k22 = tensile / (1 - poisson * poisson), k33 = tensile / (1 + poisson);
   const double hinge = 2.4 * modulus * tip.area / std::pow(0.1, 2);

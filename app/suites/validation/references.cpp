@@ -41,7 +41,7 @@ std::array<double, N> integrate(std::array<double, N> y, int count, const Functi
 template <std::size_t N, class Function>
 std::array<double, N> newton_step(const Function& residual, std::array<double, N> u,
                                   double parameter) {
-  // The right side, and the Jacobian column by column.
+  // The right side is the residual, and the Jacobian follows column by column from differences.
   const std::array<double, N> r = residual(u, parameter);
   std::array<std::array<double, N + 1>, N> rows;
   for (std::size_t i = 0; i < N; ++i) rows[i][N] = -r[i];

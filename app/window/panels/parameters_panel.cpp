@@ -50,7 +50,7 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
     ImGui::Text("%s", shown("lower: " + std::string(info.lower)).c_str());
     ImGui::Text("%s", shown("higher: " + std::string(info.higher)).c_str());
 
-    // The range and the scene's own value.
+    // The tooltip gives the range and the scene's own value.
     ImGui::TextDisabled(
         "%s", shown("from " + number(info.minimum) + " to " + number(info.maximum) + unit +
                     ", in this scene " + number(edits.start_value(info)) + unit)

@@ -90,7 +90,7 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
 
-  // The scene's name on the left, the clock on the right.
+  // The scene's name is on the left, the clock on the right.
   ImGui::TextUnformatted(context.scene.name.c_str());
   char clock[64];
   std::snprintf(clock, sizeof clock, "%.2f s   step %lld", context.state.time,
@@ -99,7 +99,7 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
                   ImGui::GetStyle().WindowPadding.x);
   ImGui::TextDisabled("%s", clock);
 
-  // The parts from top to bottom, of which the tabs take the rest.
+  // The parts follow from top to bottom, and the tabs take the rest.
   draw_transport(context);
   ImGui::Spacing();
   draw_stage_plot(context);

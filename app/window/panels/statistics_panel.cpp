@@ -49,7 +49,7 @@ void draw_stage_legend(PanelContext& context) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFontSize();
 
-    // A small square in the stage's colour.
+    // A small square shows the stage's colour.
     ImGui::GetWindowDrawList()->AddRectFilled(
         {at.x, at.y + size * 0.25f}, {at.x + size * 0.6f, at.y + size * 0.85f}, stage.colour, 2);
     ImGui::Dummy({size * 0.6f, size});
@@ -186,7 +186,7 @@ void draw_stage_plot(PanelContext& context) {
     x += width;
   }
 
-  // The scale and the legend.
+  // The plot needs its scale and a legend.
   std::snprintf(text, sizeof text, "%.3g ms", scale);
   list.AddText({at.x + 5, at.y + 2}, colour::kDim, text);
   draw_stage_legend(context);
@@ -217,7 +217,7 @@ void draw_statistics(PanelContext& context) {
     ImGui::EndTable();
   }
 
-  // The history of four numbers that tell how the run goes.
+  // The history of four numbers tells how the run goes.
   ImGui::Spacing();
   draw_log_line(
       context, "CG residual", [](const StepReport& r) { return r.cg_residual; }, colour::kAccent);
