@@ -1,4 +1,4 @@
-// What a kernel sees of the device: its place in the grid, barriers, shared memory.
+// The device as a kernel sees it: its place in the grid, barriers, shared memory.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What stands behind <<<…>>> and the cooperative launch: arguments are copied as bytes, and the
-// kernel is handed to the stream.
+// The emulation of <<<…>>> and of the cooperative launch: arguments are copied as bytes, and the
+// stream gets the kernel.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace cuda_on_host {
 
 struct Stream;
 
-/// What stands between <<< and >>>.
+/// The launch configuration between <<< and >>>.
 struct LaunchShape {
   dim3 blocks, threads;
   std::size_t shared_bytes = 0;
@@ -57,7 +57,7 @@ void launch_with(const char* name, const LaunchShape& shape, bool cooperative, c
          [kernel, copies = std::make_tuple(arguments...)] { std::apply(kernel, copies); });
 }
 
-/// What ICLOTH_LAUNCH makes: called with the arguments of the kernel.
+/// The object that ICLOTH_LAUNCH makes. It is called with the arguments of the kernel.
 template <class Kernel>
 struct Launcher {
   const char* name;

@@ -1,4 +1,4 @@
-// What the stand-ins of CUDA's libraries share.
+// Helpers that the stand-ins of CUDA's libraries share.
 #pragma once
 
 #include <cstddef>

@@ -29,7 +29,7 @@ struct Case {
   int steps = 10;
 };
 
-/// What the tests look at after a run.
+/// The outcome of a run, as the tests look at it.
 struct Outcome {
   std::vector<std::uint64_t> hashes;  ///< after each step
   int refused = 0;                    ///< steps

@@ -71,7 +71,7 @@ TEST(SteadyMemory, ImpactZonesTakeNothing) {
   EXPECT_EQ(run.grown, 0);
 }
 
-/// What was reserved is for some candidates a vertex; a thick sheet has more, and the profile notes
+/// Memory is reserved for some candidates a vertex; a thick sheet has more, and the profile notes
 /// it.
 TEST(SteadyMemory, MoreThanWasReservedIsTakenOnceAndNoted) {
   const MemoryRun run(ICLOTH_TEST_FOLDER "/data/drop.json",

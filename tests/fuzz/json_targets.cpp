@@ -25,7 +25,7 @@ std::string read_recording(std::string_view bytes) {
   Recording recording;
   const std::string reason = refusal([&] { recording = load_recording(path); });
   if (!reason.empty()) return reason;
-  // What was read can be written and read again, and is the same then.
+  // A recording that was read can be written and read again, and is the same then.
   const std::string second = scratch_folder() + "/again.json", third = second + "2";
   save_recording(recording, second);
   save_recording(load_recording(second), third);

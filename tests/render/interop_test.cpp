@@ -50,7 +50,7 @@ Content content_of(const VertexBuffers& buffers) {
   return content;
 }
 
-/// What a test sees of a fake writer after the renderer took it.
+/// A record of a fake writer, for tests to read after the renderer took it.
 struct Log {
   int made = 0, written = 0, destroyed = 0;
   int fail_at = -1;  ///< this write fails, counted from 0

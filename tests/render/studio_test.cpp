@@ -1,4 +1,4 @@
-// What the renderer works out before OpenGL: lights, thread directions, markers.
+// Values that the renderer works out before OpenGL: lights, thread directions, markers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

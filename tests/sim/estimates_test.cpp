@@ -1,4 +1,4 @@
-// What a step says about its own errors, in scenes where it is known (double build).
+// A step's estimates of its own errors, in scenes whose errors are known (double build).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -143,7 +143,8 @@ TEST(EnergyBalance, OfClothHangingAtRestIsNothing) {
   EXPECT_LT(most, 1e-12);
 }
 
-/// What a roll that springs open loses, and its energy balance; [0]: elastic, [1]: its yarns rub.
+/// The energy that a roll loses when it springs open, and its energy balance; [0]: elastic, [1]:
+/// with internal friction of the yarns.
 struct Unrolled {
   double lost[2] = {}, balance[2] = {}, largest_balance = -1;
 };

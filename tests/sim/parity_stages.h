@@ -8,7 +8,7 @@
 
 namespace icloth::testing {
 
-/// Where the stages start from: numbers that single precision holds.
+/// The state from which the stages start, in numbers that single precision holds.
 struct StageStart {
   const Scene* scene = nullptr;
   std::vector<Vec3f> x0;        ///< start of the step [m] (vertices)
@@ -17,7 +17,7 @@ struct StageStart {
   float dt = 0.01f;             ///< [s]
 };
 
-/// What the stages find, as ascending pair keys (kernels/stencil.h).
+/// The pairs that the stages find, as ascending keys (kernels/stencil.h).
 struct StageLists {
   using Keys = std::vector<std::uint64_t>;
   Keys candidates;         ///< broad phase around x0 and x0 + dt·velocity

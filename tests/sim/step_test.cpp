@@ -243,7 +243,7 @@ TEST_P(Builds, TheTwoStepIntegratorHoldsTheClothAndGoesOnFromASnapshot) {
   run_cleanly(*other, 5);
 }
 
-/// Denim, whose yarns rub.
+/// Denim, with the internal friction of its yarns.
 std::shared_ptr<Scene> denim_scene(Index triangles) {
   auto scene = ball_scene(triangles);
   scene->cloths[0].material = load_material("11oz-black-denim", "");
@@ -341,7 +341,8 @@ TEST_P(Builds, FrictionOfYarnsCanBeSwitchedAndOffIsNotThere) {
   for (int k = 0; k < 20; ++k)
     EXPECT_EQ(simulator->step({}).state_hash, other->step({}).state_hash);
   EXPECT_TRUE(simulator->snapshot().yarns.empty());
-  // Single hinges know no curvature of a face: shear alone rubs, and bending where it comes back.
+  // Single hinges know no curvature of a face. Only shear has friction with them, and bending when
+  // the plates come back.
   for (const BendingModel model : {BendingModel::hinge, BendingModel::plate}) {
     Parameters on = off;
     on.material.yarn_friction = 1;

@@ -19,7 +19,7 @@ struct FakeDevicePositions : DevicePositions {
   std::vector<Vec3f> memory;
 };
 
-/// What Simulator::positions_on_device does: the slot's memory is used again.
+/// Copies as Simulator::positions_on_device does: the slot's memory is used again.
 inline void fake_copy_to_device(const std::vector<Vec3f>& positions,
                                 std::unique_ptr<DevicePositions>& slot) {
   if (!slot) slot = std::make_unique<FakeDevicePositions>();

@@ -1,4 +1,4 @@
-// What the tests of single stages share: a scene in the memory of the stages, without a Solver, and
+// Helpers of the tests of single stages: a scene in the memory of the stages, without a Solver, and
 // the slow obvious list of all pairs. Included after ICLOTH_BUILD and ICLOTH_REAL are defined.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a headless run tells its user: names of elements, the table, the files of --stats.
+// The report of a headless run to its user: names of elements, the table, the files of --stats.
 #include <gtest/gtest.h>
 
 #include <filesystem>

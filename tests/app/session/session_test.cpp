@@ -49,7 +49,7 @@ InputEvent event(InputEvent::Kind kind, int handle, Vec3d target) {
   return e;
 }
 
-/// What `icloth replay` does with a recording.
+/// Runs a recording as `icloth replay` does, and returns the hash of the state at the end.
 std::uint64_t replay(const Recording& recording, Simulator& simulator) {
   for (const Recording::Step& s : recording.steps) {
     Parameters parameters = simulator.parameters();

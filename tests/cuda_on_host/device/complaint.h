@@ -1,4 +1,4 @@
-// What the emulation does when it has found a fault: it says where, and ends the program.
+// When the emulation has found a fault, it says where, and ends the program.
 #pragma once
 
 namespace cuda_on_host {
@@ -7,8 +7,8 @@ namespace cuda_on_host {
 inline constexpr int kComplaint = 98;    ///< said by the emulation
 inline constexpr int kAccessFault = 99;  ///< an access that the processor refused
 
-/// What the device is doing, for messages: the name of a kernel, copy or library call; null:
-/// nothing.
+/// The present work of the device, for messages: the name of a kernel, copy or library call; null
+/// when it is idle.
 extern const char* running_operation;
 
 /// Prints the fault, the running operation and the calls that led there, and exits with kComplaint.

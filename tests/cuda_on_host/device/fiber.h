@@ -24,7 +24,7 @@ class Fiber {
 
   unsigned char* stack_ = nullptr;  ///< its lowest page cannot be touched
   void* own_top_ = nullptr;         ///< of the stack, while the fiber is not running
-  void* scheduler_top_ = nullptr;   ///< likewise, while it is
+  void* scheduler_top_ = nullptr;   ///< of the scheduler's stack, while the fiber is running
   void* own_identity_ = nullptr;    ///< what ThreadSanitizer knows it as
   void* scheduler_identity_ = nullptr;
 };

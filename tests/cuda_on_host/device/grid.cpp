@@ -198,7 +198,7 @@ void run_to_barrier(Block& block) {
   }
   running_block = nullptr;
 
-  // Where the block stands now.
+  // The block has ended with its last thread; otherwise it may stand at a barrier.
   const auto has_ended = [](const Thread& t) { return t.state == State::ended; };
   block.ended = std::ranges::all_of(block.threads, has_ended);
   if (block.ended) {

@@ -52,7 +52,7 @@ void launch(const char* kernel, const LaunchShape& shape, bool cooperative,
   const DeviceLock lock(device_mutex());
   if (running_thread != nullptr) complain("%s: launched inside of a kernel", kernel);
 
-  // What a device refuses.
+  // A device refuses such launches, and so does the emulation.
   const unsigned blocks = shape.blocks.x, threads = shape.threads.x;
   const bool flat = shape.blocks.y * shape.blocks.z * shape.threads.y * shape.threads.z == 1;
   if (!flat) complain("%s: only grids in one direction are emulated", kernel);

@@ -1,5 +1,5 @@
-// What ThreadSanitizer is told about the device: each of its threads is a fiber, and only barriers,
-// fences and the order of launches put one access before another. Nothing in other builds.
+// ThreadSanitizer learns about the device here: each of its threads is a fiber, and only barriers,
+// fences and the order of launches put one access before another. Other builds do nothing here.
 //
 // The emulation itself is compiled without the sanitizer's checks, or its own bookkeeping would
 // hide races; TSAN_FIBERS is defined where the kernels are compiled with them.

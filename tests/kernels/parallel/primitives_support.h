@@ -1,4 +1,4 @@
-// What the tests of the primitives share: sizes, repeatable numbers, numbers of threads, devices.
+// Helpers of the tests of the primitives: sizes, repeatable numbers, numbers of threads, devices.
 #pragma once
 
 #include <gtest/gtest.h>

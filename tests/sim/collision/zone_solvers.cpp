@@ -10,7 +10,7 @@ namespace {
 
 using testing::ZoneOutcome;
 
-/// Of a stage whose zones were solved.
+/// The outcome of a stage whose zones were solved.
 ZoneOutcome outcome_of(const Stage& stage, const std::vector<Impact>& impacts) {
   ZoneOutcome outcome;
   const std::vector<Vec3r> x1 = stage.state.x1.download();

@@ -9,7 +9,7 @@
 
 namespace icloth::testing {
 
-/// What a solver makes of crossing sheets (tests/support/crossing.h).
+/// The result of a solver for crossing sheets (tests/support/crossing.h).
 struct ZoneOutcome {
   std::vector<Vec3d> x1;    ///< end of the step [m] (vertices)
   std::size_t impacts = 0;  ///< before

@@ -117,7 +117,7 @@ class Deflection {
     return energy / area;
   }
 
-  /// Where all but the border finds its least energy, by conjugate gradients.
+  /// Heights of least energy for all vertices but those of the border, by conjugate gradients.
   std::vector<Real> relaxed(std::vector<Real> z) const {
     std::vector<Real> r = gradient(z);
     for (Real& c : r) c = -c;
@@ -149,7 +149,7 @@ class Deflection {
         theta[h] += angle_[h].gradient[a].y * z[at(sheet_.hinges[h].v.v[a])];
     return theta;
   }
-  /// Of the energy, which is quadratic in z, at the vertices that are free.
+  /// Gradient of the energy, which is quadratic in z, at the vertices that are free.
   std::vector<Real> gradient(const std::vector<Real>& z) const {
     const std::vector<Real> theta = angles(z);
     std::vector<Real> torque(theta.size(), Real(0)), g(z.size(), Real(0));

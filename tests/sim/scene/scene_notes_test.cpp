@@ -1,4 +1,4 @@
-// What the loader says about input that is accepted, but not as a user may expect.
+// Notes of the loader about input that is accepted, but not as a user may expect.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -55,7 +55,7 @@ TEST(SceneNotes, SayHowFarAPointCacheIsFromItsMesh) {
   for (const char* part : {"'b'", "s.pc2", "frame 0", "250 mm", "vertex"})
     EXPECT_TRUE(holds(away.notes[0], part)) << part << ": " << away.notes[0];
 
-  // Where the cache begins at the mesh there is nothing to say, wherever both are placed.
+  // A cache that begins at the mesh needs no note, wherever both are placed.
   folder.write("s.pc2", square_cache(0));
   EXPECT_TRUE(load(folder, body + R"(, "transform": {"scale": 3, "translate": [5, 1, 2]}}])")
                   .notes.empty());

@@ -1,4 +1,4 @@
-// What a step goes on from is all in a snapshot, and a snapshot survives as bytes.
+// A snapshot has everything that a step goes on from, and it survives as bytes.
 #include "sim/state/memory.h"
 
 #include <gtest/gtest.h>
@@ -334,7 +334,7 @@ TEST_P(BuiltInScenes, GoOnInAFreshSimulatorFromEveryStep) {
   const auto simulator = make({"triangles=200", "implicit.integrator=" + integrator});
   const RememberedRun run(*simulator, kSteps + kOn);
 
-  // What is to be remembered must have been there.
+  // The run must have had everything that is to be remembered.
   const auto any = [&](const auto& condition) {
     return std::ranges::any_of(run.before, condition);
   };
