@@ -55,7 +55,7 @@ void SharedVertices::give_up(const std::string& reason) {
   options_.on_device = false;
   reason_ = reason;
 
-  // The error is told already, so the checks after drawing must not find it again.
+  // The error is reported already, so the checks after drawing must not find it again.
   while (glGetError() != GL_NO_ERROR) {
   }
 }

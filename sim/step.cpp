@@ -166,7 +166,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
   report.step = state_.step;
   report.dt = parameters_.step.time_step;
   timed(report.ms_total, [&] {
-    // A refused step goes back to here. What hands were told to do is not undone by that.
+    // A refused step goes back to here. The orders that hands were given are not undone by that.
     match_yarns(mesh_, parameters_, state_);
     use_hands(events, report);
     save_start();

@@ -85,7 +85,7 @@ void upload_fabrics(Topology& mesh, const Scene& scene, const Parameters& parame
 void upload_plates(Topology& mesh, const World& world) {
   if (mesh.plate.size() == mesh.cloth_faces) return;
 
-  // Each hinge is told which slots of its two faces it has; edges of more than two faces have none.
+  // Each hinge gets its slots in its two faces; edges of more than two faces have none.
   std::vector<PlateRest> plates;
   std::vector<HingeSlots> slots(world.hinges.size(), HingeSlots{{-1, -1}});
   for (const FacePlate& plate : make_plates(world)) {

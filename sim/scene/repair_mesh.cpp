@@ -34,7 +34,7 @@ double corner_angle(const std::array<Vec3d, 3>& x, std::size_t k) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
-/// Normal of the surface at a point of a face that lies on the vertex or edge told by the weights.
+/// Normal of the surface at a point of a face. Weights of 0 put the point on an edge or a vertex.
 /// The signs that it gives are right for every point outside (Bærentzen and Aanæs 2005).
 Vec3d pseudo_normal(const RepairMesh& mesh, Index face, const std::array<double, 3>& w,
                     bool& on_border) {
@@ -208,8 +208,8 @@ SurfacePoint walk_to_closest(const RepairMesh& mesh, Vec3d p, Index from) {
       }
   }
 
-  // The side is told by the normal there; a point next to an edge or a vertex counts as on
-  // it.
+  // The normal at the closest point decides the side. A point next to an edge or a vertex counts as
+  // on it.
   SurfacePoint point;
   point.face = face;
   constexpr double on_feature = 1e-6;

@@ -190,8 +190,8 @@ void check_memory(const Snapshot& snapshot, const MemoryShape& shape);
 /// bytes.
 std::vector<std::byte> memory_to_bytes(const Snapshot& snapshot);
 
-/// The other way. The bytes may come from anywhere: lengths are checked before memory is taken, and
-/// what does not fit throws an InputError that begins with `source`, the name of the file.
+/// Reads a snapshot from such bytes. They may come from anywhere: lengths are checked before memory
+/// is taken, and an InputError that begins with `source`, the name of the file, says what is wrong.
 Snapshot memory_from_bytes(std::span<const std::byte> bytes, const std::string& source);
 
 }  // namespace icloth

@@ -90,9 +90,9 @@ double shadow(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
 }
 
 /// The drape coefficient [%] of a fabric at rest, of one specimen. It is let down gently, for 1.5 s
-/// in air as heavy as water (some 6 cm/s), then left in the air of the scene. Yarns that rub hold
-/// the cloth where it first can rest, and a specimen that drops swings below that and stays there
-/// (docs/deviations.md).
+/// in air as heavy as water (some 6 cm/s), then left in the air of the scene. Internal friction
+/// holds the cloth where it first can rest, and a specimen that drops swings below that and stays
+/// there (docs/deviations.md).
 double drape_of(CaseRun& run, const Material& material, double edge, int specimen) {
   auto scene = std::make_shared<Scene>();
   scene->name = scene->source = "drape of " + material.name;
