@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the tables of the documentation from the recorded results.
+"""Makes the tables of the documentation from the recorded results and from the table of parameters.
 
     docs/make_tables.py            writes the tables and assets/results/presets.json
     docs/make_tables.py --check    changes nothing, exits with 1 where something is out of date
@@ -11,6 +11,9 @@ import json
 import pathlib
 import re
 import sys
+
+sys.dont_write_bytecode = True  # the folder of the documentation stays as it is
+from read_parameters import read_parameters
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -159,7 +162,13 @@ def drape_table(_):
     return markdown(["fabric", "edges of 2.5 mm", "edges of 5 mm"], rows)
 
 
-TABLES = {"quick": quick_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
+def parameter_table(_):
+    """The parameters of a simulation, from the table that the program works with."""
+    return markdown(["parameter", "default", "values", "a lower value, or the first", "a higher value, or the others"],
+                    read_parameters(ROOT / "sim" / "scene"))
+
+
+TABLES = {"quick": quick_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
           "zone_solvers": zone_solver_table, "preconditioners": preconditioner_table, "drape": drape_table}
 
 
