@@ -4,7 +4,7 @@
     docs/make_tables.py            writes the tables and assets/results/presets.json
     docs/make_tables.py --check    changes nothing, exits with 1 where something is out of date
 
-A table stands in docs/*.md between the lines `<!-- table NAME -->` and `<!-- end -->`; TABLES below
+A table stands in a document between the lines `<!-- table NAME -->` and `<!-- end -->`; TABLES below
 says how it is made. Measured numbers are kept in docs/results alone: whoever records a suite anew
 runs this script, and no prose has to change."""
 import json
@@ -168,7 +168,16 @@ def parameter_table(_):
                     read_parameters(ROOT / "sim" / "scene"))
 
 
-TABLES = {"quick": quick_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
+def runs_table(_):
+    """Which suites are recorded, each with the commit that it ran at."""
+    rows = [["quick", (RESULTS / "quick.txt").read_text().splitlines()[0].rsplit(" ", 1)[1]]]
+    rows += [[path.stem, recorded(path.stem)["machine"]["commit"]] for path in sorted(RESULTS.glob("*.json"))]
+    return markdown(["suite", "commit", "files"],
+                    [[f"`{suite}`", f"`{commit[:7]}`", ", ".join(f"[{path.name}]({RESULTS.name}/{path.name})"
+                      for path in sorted(RESULTS.glob(suite + ".*")))] for suite, commit in sorted(rows)])
+
+
+TABLES = {"quick": quick_table, "runs": runs_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
           "zone_solvers": zone_solver_table, "preconditioners": preconditioner_table, "drape": drape_table}
 
 
@@ -202,7 +211,7 @@ def main():
         sys.exit(__doc__)
     accuracy = Accuracy()
     wanted = {ROOT / "assets" / "results" / "presets.json": presets_file(accuracy)}
-    for path in sorted(DOCS.glob("*.md")) + [ROOT / "README.md"]:
+    for path in sorted(DOCS.glob("*.md")) + [DOCS / "results" / "README.md", ROOT / "README.md"]:
         wanted[path] = replaced(path.read_text(), accuracy, path)
     stale = [path for path, text in wanted.items() if not path.exists() or path.read_text() != text]
     for path in stale:
