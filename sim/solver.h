@@ -40,15 +40,26 @@ class Solver final : public Simulator {
   std::vector<HandleState> handles() const override;
 
  private:
+  // sim/step.cpp
+  void begin_step(std::span<const InputEvent> events, StepReport& report);
+  bool run_substeps(StepReport& report);
+  void finish_step(StepReport& report);
+  void report_end_state(StepReport& report);
+  void close_report(StepReport& report) const;
   /// One attempt at a substep; false when impacts are left or numbers are not finite.
   bool try_substep(StepReport& report, double start, double dt, bool last_resort);
+  SubstepContext substep(StepReport& report, double start, double dt);
+  void find_contacts(SubstepContext& step);
+  bool check_candidate(StepReport& report, bool last_resort);
   bool resolve_by_zones(SubstepContext& step);
   bool resolve_by_rollback(SubstepContext& step);
   void find_impacts(SubstepContext& step, bool first_round);
+  bool let_go_of_bodies(StepReport& report, double start, double dt);
+
+  // sim/solver.cpp
   void begin_substep(double start, double dt);
   void accept_substep(StepReport& report, double dt);
   double zone_work(double dt);
-  bool let_go_of_bodies(StepReport& report, double start, double dt);
   void report_offending(StepReport& report) const;
 
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.

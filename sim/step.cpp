@@ -1,5 +1,8 @@
 // READ FIRST. One step of the simulation: the pipeline of Tang et al. 2018, Section 2.4.
 //
+// A step is made of substeps, one as long as the step where nothing is fast (run_substeps). Each of
+// them is the pipeline of the paper (try_substep):
+//
 //   begin_substep             obstacles at t and t + dt, x0 ← x1
 //   proximity                 (1) VF and EE pairs closer than the thickness        Section 2.5
 //   implicit                  (2) anchors of the yarn friction follow;
@@ -19,6 +22,7 @@
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/yarns.h"
 #include "sim/solver.h"
+#include "sim/substep_clock.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -34,35 +38,129 @@ void timed(double& milliseconds, const Stage& stage) {
 
 }  // namespace
 
+StepReport Solver::step(std::span<const InputEvent> events) {
+  use_device();
+  StepReport report;
+  report.step = state_.step;
+  report.dt = parameters_.step.time_step;
+
+  timed(report.ms_total, [&] {
+    begin_step(events, report);
+    report.accepted = run_substeps(report);
+    finish_step(report);
+    report_end_state(report);
+    grow_reserve();
+  });
+  close_report(report);
+  return report;
+}
+
+/// A refused step goes back to the state that is saved here. The orders that the hands were given
+/// are part of that state and stay.
+void Solver::begin_step(std::span<const InputEvent> events, StepReport& report) {
+  match_yarns(mesh_, parameters_, state_);
+  use_hands(events, report);
+  save_start();
+}
+
+/// False when a substep was refused that cannot be halved any more.
+bool Solver::run_substeps(StepReport& report) {
+  SubstepClock clock(state_.time, report.dt, parameters_.step.max_substep_levels,
+                     travel_level(report));
+  report.substeps = 0;
+
+  while (!clock.is_done()) {
+    const double start = clock.start(), dt = clock.length();
+    if (try_substep(report, start, dt, clock.is_shortest())) {
+      accept_substep(report, dt);
+      ++report.substeps;
+      clock.advance(travel_level(report));
+      continue;
+    }
+
+    // The shortest substep is tried once more where cloth was let go from bodies that squeeze it.
+    // Other refused substeps are tried again at half their length.
+    report_offending(report);
+    const bool let_go = clock.is_shortest() && let_go_of_bodies(report, start, dt);
+    back_to_substep_start();
+    ++report.retries;
+    if (!let_go && !clock.halve()) return false;
+  }
+  return true;
+}
+
+/// The state of an accepted step is that of its last substep. A refused step leaves the state of
+/// its start, whatever its substeps had reached.
+void Solver::finish_step(StepReport& report) {
+  if (!report.accepted) {
+    back_to_start();
+    report.momentum_error = 0;
+    return;
+  }
+  report.offending.clear();
+  report.no_room = false;
+  state_.time += report.dt;
+  report.step = ++state_.step;
+}
+
+/// Energies and hash are those of the state that was reached, or kept.
+void Solver::report_end_state(StepReport& report) {
+  const double energy = report_state(implicit_.forces(), mesh_, state_, parameters_, report);
+  if (report.accepted) report.energy_balance = energy - *energy_ - work_;
+  energy_ = energy;
+  report.state_hash = hash_state(state_);
+  report.pinched = pinch_.vertices(state_);
+}
+
+/// Time that no stage has measured counts as the rest of the step.
+void Solver::close_report(StepReport& report) const {
+  report.time = state_.time;
+  report.static_faces = mesh_.faces - report.dynamic_faces;
+  report.candidate_pairs = broad_phase_.candidate_count();
+  report.ms_other = report.ms_total - report.ms_proximity - report.ms_implicit -
+                    report.ms_broad_phase - report.ms_ccd - report.ms_impact_zones;
+}
+
 bool Solver::try_substep(StepReport& report, double start, double dt, bool last_resort) {
   // Obstacles move first: pairs are found along their paths.
   begin_substep(start, dt);
-  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+  SubstepContext step = substep(report, start, dt);
   timed(report.ms_broad_phase, [&] { broad_phase_.prepare(step); });
-  timed(report.ms_proximity, [&] {
-    if (parameters_.proximity.enabled)
-      proximity_.find(step, broad_phase_, let_go_view(state_, mesh_));
-    else
-      proximity_.clear();
-    if (!state_.let_go.empty()) proximity_.add(pinch_.push_outs(step));
-  });
+  timed(report.ms_proximity, [&] { find_contacts(step); });
 
   // Forces alone decide the candidate, which may penetrate.
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
-  report.finite = all_finite(state_);
-  if (!report.finite) return false;
-
-  // Half the step leaves a quarter of the strain that the linear solve does not see.
-  if (implicit_.linearization_error() > parameters_.implicit.max_linearization_error) {
-    report.reach(Limit::linearization_error);
-    if (!last_resort) return false;
-  }
+  if (!check_candidate(report, last_resort)) return false;
 
   // Impacts of the candidate are corrected, or in the last resort taken back.
   if (resolve_by_zones(step)) return true;
   if (!last_resort) return false;
   report.reach(Limit::substep_levels);
   return resolve_by_rollback(step);
+}
+
+SubstepContext Solver::substep(StepReport& report, double start, double dt) {
+  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+}
+
+/// Cloth that was let go from a body is pushed out of it instead of being kept away from it.
+void Solver::find_contacts(SubstepContext& step) {
+  if (parameters_.proximity.enabled)
+    proximity_.find(step, broad_phase_, let_go_view(state_, mesh_));
+  else
+    proximity_.clear();
+  if (!state_.let_go.empty()) proximity_.add(pinch_.push_outs(step));
+}
+
+/// False when the candidate is not finite, or when a shorter substep would be much more accurate:
+/// half of it leaves a quarter of the strain that the linear solve does not see.
+bool Solver::check_candidate(StepReport& report, bool last_resort) {
+  report.finite = all_finite(state_);
+  if (!report.finite) return false;
+  const double error = implicit_.linearization_error();
+  if (!(error > parameters_.implicit.max_linearization_error)) return true;
+  report.reach(Limit::linearization_error);
+  return last_resort;
 }
 
 bool Solver::resolve_by_zones(SubstepContext& step) {
@@ -139,7 +237,7 @@ void Solver::find_impacts(SubstepContext& step, bool first_round) {
 /// True when cloth was let go that bodies squeeze in the smallest substep: it is tried once more.
 bool Solver::let_go_of_bodies(StepReport& report, double start, double dt) {
   if (!report.finite || !parameters_.impact_zones.enabled || ccd_.impacts().empty()) return false;
-  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+  SubstepContext step = substep(report, start, dt);
   return pinch_.release(step, ccd_.impacts());
 }
 
@@ -149,7 +247,7 @@ void Solver::pass_over() {
   const double dt = parameters_.step.time_step;
   begin_substep(state_.time, dt);
   StepReport report;
-  SubstepContext step{mesh_, parameters_, state_, report, static_cast<Real>(dt), state_.time};
+  SubstepContext step = substep(report, state_.time, dt);
   broad_phase_.cover_candidate(step);
   ccd_.find(step, broad_phase_, {}, false, let_go_view(state_, mesh_));
   pinch_.release_all(state_, ccd_.impacts());
@@ -158,72 +256,6 @@ void Solver::pass_over() {
   rest_cloth();
   state_.time += dt;
   ++state_.step;
-}
-
-StepReport Solver::step(std::span<const InputEvent> events) {
-  use_device();
-  StepReport report;
-  report.step = state_.step;
-  report.dt = parameters_.step.time_step;
-  timed(report.ms_total, [&] {
-    // A refused step goes back to here. The orders that hands were given are not undone by that.
-    match_yarns(mesh_, parameters_, state_);
-    use_hands(events, report);
-    save_start();
-
-    // The step is a whole of 2^levels units; a substep is 2^(levels − level) of them.
-    const int levels = parameters_.step.max_substep_levels;
-    const std::int64_t whole = std::int64_t{1} << levels;
-    std::int64_t done = 0;
-    int level = travel_level(report);
-    report.substeps = 0;
-
-    // A substep that is not accepted is tried again at half its length.
-    while (done < whole && report.accepted) {
-      const double dt = report.dt / static_cast<double>(std::int64_t{1} << level);
-      const double start =
-          state_.time + report.dt * static_cast<double>(done) / static_cast<double>(whole);
-      if (try_substep(report, start, dt, level == levels)) {
-        accept_substep(report, dt);
-        ++report.substeps;
-        done += whole >> level;
-        if (level > travel_level(report) && done % (whole >> (level - 1)) == 0) --level;
-      } else {
-        report_offending(report);
-        const bool room = level == levels && let_go_of_bodies(report, start, dt);
-        back_to_substep_start();
-        ++report.retries;
-        if (!room) report.accepted = ++level <= levels;
-      }
-    }
-
-    // A refused step leaves the state of its start, whatever its substeps had reached.
-    if (report.accepted) {
-      report.offending.clear();
-      report.no_room = false;
-      state_.time += report.dt;
-      report.step = ++state_.step;
-    } else {
-      back_to_start();
-      report.momentum_error = 0;
-    }
-
-    // Energies and hash are those of the state that was reached, or kept.
-    const double energy = report_state(implicit_.forces(), mesh_, state_, parameters_, report);
-    if (report.accepted) report.energy_balance = energy - *energy_ - work_;
-    energy_ = energy;
-    report.state_hash = hash_state(state_);
-    report.pinched = pinch_.vertices(state_);
-    grow_reserve();
-  });
-
-  // Time that no stage has measured counts as the rest of the step.
-  report.time = state_.time;
-  report.static_faces = mesh_.faces - report.dynamic_faces;
-  report.candidate_pairs = broad_phase_.candidate_count();
-  report.ms_other = report.ms_total - report.ms_proximity - report.ms_implicit -
-                    report.ms_broad_phase - report.ms_ccd - report.ms_impact_zones;
-  return report;
 }
 
 }  // namespace icloth::ICLOTH_BUILD
