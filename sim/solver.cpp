@@ -219,7 +219,7 @@ void Solver::begin_substep(double start, double dt) {
 void Solver::accept_substep(StepReport& report, double dt) {
   if (free_mass_ > 0)
     report.momentum_error =
-        std::max(report.momentum_error, norm(implicit_.lost_force()) / free_mass_);
+        std::max(report.momentum_error, norm(implicit_.residual_force()) / free_mass_);
   proximity_.keep_friction(state_, parameters_, real(dt));
   pinch_.take_back(state_, parameters_);
   implicit_.finish_substep(state_);

@@ -173,7 +173,7 @@ struct ConjugateGradients {
       end = true_residuals(team);
     }
     result.residual = std::sqrt(end.rr / bb);
-    result.lost = end.sum;
+    result.residual_sum = end.sum;
     return result;
   }
 };

@@ -10,9 +10,8 @@ namespace icloth::ICLOTH_BUILD {
 struct LinearSolution {
   Index iterations = 0;
   double residual = 0;  ///< ‖b − Ax‖₂ / ‖b‖₂, computed anew at the end
-
-  Vec3d lost;        ///< Σ over the rows of b − Ax, computed anew [N·s]
-  double bytes = 0;  ///< that the iterations had to read and write at least
+  Vec3d residual_sum;   ///< Σ over the rows of b − Ax, computed anew [N·s]
+  double bytes = 0;     ///< that the iterations had to read and write at least
 };
 
 struct SolveOptions {

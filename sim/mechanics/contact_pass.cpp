@@ -175,7 +175,7 @@ void ContactPasses::solve_once(SubstepContext& step, const ContactSystem& system
   if (solution.iterations >= p.cg_max_iterations && solution.residual > p.cg_tolerance)
     step.report.reach(Limit::cg_iterations);
   step.report.cg_residual = std::max(step.report.cg_residual, solution.residual);
-  lost_force_ = (1 / static_cast<double>(system.h)) * solution.lost;
+  residual_force_ = (1 / static_cast<double>(system.h)) * solution.residual_sum;
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -27,8 +27,8 @@ class ContactPasses {
   /// a solution of an earlier linearisation, from which the state of the contacts is taken.
   void solve(SubstepContext& step, const ContactSystem& system, View<Vec3r> dv, bool solved);
 
-  /// Residual of the last solve, the sum over all free vertices [N].
-  Vec3d lost_force() const { return lost_force_; }
+  /// Residual of the last solve, summed over all free vertices [N].
+  Vec3d residual_force() const { return residual_force_; }
   /// Work of the contacts on the cloth in the last solve [J].
   double work() const { return work_; }
   /// The contacts that acted in the last solve.
@@ -43,7 +43,7 @@ class ContactPasses {
   Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
   Array<Vec3r> rhs_;               ///< with contacts [N·s] (cloth_vertices)
   LinearSolver solver_;
-  Vec3d lost_force_;
+  Vec3d residual_force_;
   double work_ = 0;
 };
 

@@ -34,8 +34,8 @@ class Implicit {
 
   /// Largest error of the tension that the last linearisation made [N/m].
   double linearization_error() const { return linearization_error_; }
-  /// Residual of the last solve, summed over all free vertices: force that Δv leaves out [N].
-  Vec3d lost_force() const { return contacts_.lost_force(); }
+  /// Residual of the last solve, summed over all free vertices [N].
+  Vec3d residual_force() const { return contacts_.residual_force(); }
   /// Work on the cloth from x0 to the candidate, of contacts and of the forces that have no
   /// potential [J].
   double work() const { return contacts_.work() + outer_work_; }
