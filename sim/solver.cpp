@@ -234,7 +234,8 @@ double Solver::zone_work(double dt) {
            CandidateVelocity{state_.candidate.view(), state_.x1.view(), state_.v.view(),
                              candidate_v_.view(), real(1 / dt)});
   const auto energy = [&](View<const Vec3r> x, View<const Vec3r> v) {
-    return figures_of(implicit_.forces(), {mesh_, parameters_, x}, state_.mass.view(), v).energy();
+    return statistics_of(implicit_.forces(), {mesh_, parameters_, x}, state_.mass.view(), v)
+        .energy();
   };
   return energy(state_.x1.view(), state_.v.view()) -
          energy(state_.candidate.view(), candidate_v_.view());
@@ -265,8 +266,8 @@ void Solver::save_start() {
   start_.copy_from(state_);
   work_ = 0;
   if (!energy_)
-    energy_ = figures_of(implicit_.forces(), {mesh_, parameters_, state_.x1.view()},
-                         state_.mass.view(), state_.v.view())
+    energy_ = statistics_of(implicit_.forces(), {mesh_, parameters_, state_.x1.view()},
+                            state_.mass.view(), state_.v.view())
                   .energy();
 }
 

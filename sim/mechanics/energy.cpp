@@ -70,8 +70,8 @@ struct CountInfinite {
 
 }  // namespace
 
-StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
-                        View<const Vec3r> v) {
+StateStatistics statistics_of(const Forces& forces, const EnergyContext& shape,
+                              View<const Real> mass, View<const Vec3r> v) {
   const ForceEnergy energy = forces.energy(shape);
 
   const GravityParameters& g = shape.parameters.gravity;
@@ -88,14 +88,14 @@ StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<c
 
 double report_state(const Forces& forces, const Topology& mesh, const State& state,
                     const Parameters& parameters, StepReport& report) {
-  const StateFigures figures =
-      figures_of(forces, {mesh, parameters, state.x1.view()}, state.mass.view(), state.v.view());
-  report.kinetic_energy = figures.kinetic;
-  report.elastic_energy = figures.elastic;
-  report.gravity_energy = figures.gravity;
-  report.max_strain = figures.strain;
-  report.max_speed = figures.speed;
-  return figures.energy();
+  const StateStatistics statistics =
+      statistics_of(forces, {mesh, parameters, state.x1.view()}, state.mass.view(), state.v.view());
+  report.kinetic_energy = statistics.kinetic;
+  report.elastic_energy = statistics.elastic;
+  report.gravity_energy = statistics.gravity;
+  report.max_strain = statistics.strain;
+  report.max_speed = statistics.speed;
+  return statistics.energy();
 }
 
 std::uint64_t hash_state(const State& state) {

@@ -6,7 +6,7 @@
 namespace icloth::ICLOTH_BUILD {
 
 /// Statistics of a state of the cloth.
-struct StateFigures {
+struct StateStatistics {
   double kinetic = 0, elastic = 0, gravity = 0;  ///< energies [J]
   double outer = 0;   ///< energy of other conservative forces from outside [J]
   double strain = 0;  ///< largest principal stretch − 1
@@ -15,10 +15,9 @@ struct StateFigures {
   double energy() const { return kinetic + elastic + gravity + outer; }
 };
 
-/// A state of the cloth: `shape` of `forces`, with masses [kg] and velocities [m/s]
-/// (≥ cloth_vertices).
-StateFigures figures_of(const Forces& forces, const EnergyContext& shape, View<const Real> mass,
-                        View<const Vec3r> v);
+/// Measures the cloth in a shape, with masses [kg] and velocities [m/s] (≥ cloth_vertices).
+StateStatistics statistics_of(const Forces& forces, const EnergyContext& shape,
+                              View<const Real> mass, View<const Vec3r> v);
 
 /// Writes the statistics of the state (x1, v) to the report; returns its energy [J].
 double report_state(const Forces& forces, const Topology& mesh, const State& state,
