@@ -57,7 +57,10 @@ struct Commands {
   void add_render();
   void add_bench();
   void add_replay();
-  void add_tests();
+  void add_ccd();
+  void add_detect();
+  void add_check();
+  void add_info();
 };
 
 /// Adds a command whose action is run when the whole line has been read. `options` are those that
@@ -171,29 +174,33 @@ void Commands::add_bench() {
   app.add_subcommand("bench", "benchmark suites and reports (icloth bench --help)");
 }
 
-void Commands::add_tests() {
-  // These commands test parts of the program on files of queries and on meshes.
-  CLI::App* ccd = add_command("ccd", "elementary CCD over a file of queries",
-                              [this] { return run_ccd(ccd_queries, ccd_predictions); });
-  ccd->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
-  ccd->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
+void Commands::add_ccd() {
+  CLI::App* command = add_command("ccd", "elementary CCD over a file of queries",
+                                  [this] { return run_ccd(ccd_queries, ccd_predictions); });
+  command->add_option("QUERIES", ccd_queries, "CSV, plain or .gz")->required();
+  command->add_option("--pred", ccd_predictions, "write one line a query here: 0 or 1 TOI");
+}
 
+void Commands::add_detect() {
   CLI::App* command = add_command("detect", "all collisions between two frames of a mesh",
                                   [this] { return run_detect(detect); });
-
   command->add_option("T0", detect.start, "OBJ or PLY file of the start")->required();
   command->add_option("T1", detect.end, "the same mesh at the end")->required();
   command->add_option("--csv", detect.csv, "prefix of the lists: PREFIX_vf.csv, PREFIX_ee.csv");
   command->add_option("--threads", detect.threads, "threads")->check(CLI::Range(1, 4096));
+}
 
-  command = add_command("check", "exact self- and inter-mesh intersection test",
-                        [this] { return run_check(check); });
+void Commands::add_check() {
+  CLI::App* command = add_command("check", "exact self- and inter-mesh intersection test",
+                                  [this] { return run_check(check); });
   command->add_option("MESH", check.meshes, "OBJ or PLY files, tested as one")->required();
   command->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
+}
 
-  CLI::App* info = add_command("info", "version, machine, builds, renderer",
-                               [this] { return list_keys ? print_keys() : run_info(); });
-  info->add_flag("--keys", list_keys, "print docs/keys.md: the keys and what the mouse does");
+void Commands::add_info() {
+  CLI::App* command = add_command("info", "version, machine, builds, renderer",
+                                  [this] { return list_keys ? print_keys() : run_info(); });
+  command->add_flag("--keys", list_keys, "print docs/keys.md: the keys and what the mouse does");
 }
 
 Commands::Commands() {
@@ -205,7 +212,10 @@ Commands::Commands() {
   add_render();
   add_bench();
   add_replay();
-  add_tests();
+  add_ccd();
+  add_detect();
+  add_check();
+  add_info();
 }
 
 /// Completes `icloth [view] [SCENE]`: puts the command in where it was left out.
