@@ -107,31 +107,45 @@ void hang_by_highest(Cloth& cloth) {
   for (std::size_t v = 0; v < x.size(); ++v)
     if (x[v].y >= limit) cloth.pins.push_back(static_cast<Index>(v));
   if (cloth.pins.size() * 2 <= x.size()) return;
+
   // A sheet that lies flat has no top: two far corners hold it.
   const auto along = [](Vec3d p) { return p.x + p.z; };
   const auto [a, b] = std::ranges::minmax_element(x, {}, along);
   cloth.pins = {static_cast<Index>(a - x.begin()), static_cast<Index>(b - x.begin())};
 }
 
-CameraPose framing_camera(const std::vector<Vec3d>& points) {
+/// Adds a camera that sees all cloths at their start.
+void add_framing_camera(Scene& scene) {
+  if (scene.cloths.empty()) return;
   Bounds bounds;
-  for (Vec3d p : points) bounds.add(p);
+  for (const Cloth& cloth : scene.cloths)
+    for (Vec3d p : cloth.mesh.positions) bounds.add(p);
   const auto [low, high] = bounds;
+
+  // The sphere around the cloths fills most of the picture.
   CameraPose camera;
   const double radius = std::max(0.5 * norm(high - low), 1e-3);
   camera.target = 0.5 * (low + high);
   const double distance = 1.15 * radius / std::sin(camera.fov * std::numbers::pi / 360);
   camera.eye = camera.target + distance * normalized(Vec3d{0.35, 0.3, 1});
-  return camera;
+  scene.cameras.push_back(camera);
 }
 
-Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
-  Scene scene;
+/// The parameters of the air that the scene file or the command line sets.
+struct AirSettings {
+  bool drag = false, density = false;
+};
 
-  // The mesh is the cloth, at rest as it is in the file.
-  scene.name = fs::path(path).stem().string();
+/// A scene as its file gives it.
+struct FileScene {
+  Scene scene;
+  AirSettings air;
+};
+
+/// The mesh is the cloth, at rest as it is in the file.
+Cloth cloth_of_mesh(const std::string& path, SceneOrigin& origin) {
   Cloth cloth;
-  cloth.name = scene.name;
+  cloth.name = fs::path(path).stem().string();
   cloth.mesh = read_mesh(path).mesh;
   check_cloth_mesh(cloth.mesh, shown_path(path));
   cloth.mesh.uv.clear();  // may be texture coordinates of any size
@@ -144,12 +158,17 @@ Scene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
   const std::string note = unit_note(options.object, cloth.mesh.positions, {1, 1, 1}, true);
   if (!note.empty()) origin.notes.push_back(note + " (in a scene file)");
 
-  // Without a scene file nothing says how to hold the cloth or how thick it is.
+  // Without a scene file nothing says what the cloth is made of or how it is held.
   cloth.material = load_material("default", "");
   hang_by_highest(cloth);
-  scene.cloths.push_back(std::move(cloth));
-  fit_thickness(scene);
-  return scene;
+  return cloth;
+}
+
+FileScene scene_of_mesh(const std::string& path, SceneOrigin& origin) {
+  Scene scene;
+  scene.cloths.push_back(cloth_of_mesh(path, origin));
+  scene.name = scene.cloths.front().name;
+  return {std::move(scene), {}};
 }
 
 bool is_mesh_name(const std::string& argument) {
@@ -169,37 +188,58 @@ std::string scene_path(const std::string& argument) {
   return path;
 }
 
-/// Which of the parameters of the air the scene or the command line sets.
-struct AirSettings {
-  bool drag = false, density = false;
-};
-
-/// In still air the pressure on a moving cloth brakes it as drag does, and it depends on the
-/// density. Whoever sets the drag to 0 and says nothing about the density wants no air.
-void still_air_without_drag(Scene& scene, const AirSettings& set, SceneOrigin& origin) {
-  WindParameters& wind = scene.parameters.wind;
-  const bool is_still = wind.x == 0 && wind.y == 0 && wind.z == 0;
-  if (!set.drag || set.density || wind.air_drag != 0 || !is_still || wind.air_density == 0) return;
-  wind.air_density = 0;
-  origin.notes.emplace_back(
-      "wind.air_drag is 0 in still air: wind.air_density is set to 0 too, so that nothing brakes "
-      "the cloth; set it to keep the pressure");
-}
-
-Scene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits,
-                    AirSettings& air, SceneOrigin& origin) {
+FileScene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits,
+                        SceneOrigin& origin) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
-  air.drag = sets_parameter(json, "wind", "air_drag");
-  air.density = sets_parameter(json, "wind", "air_density");
   SceneFolder folder{fs::path(path).parent_path().string(), 1, limits, nullptr};
+
+  // The number of triangles is that of all grids together, which keep their proportions.
   if (triangles > 0) {
     const double own = total_grid_triangles(json);
     if (!(own > 0))
       throw InputError(shown_path(path) + ": --set triangles: no cloth of the scene is a grid");
     folder.triangle_scale = triangles / own;
   }
-  return parse_scene(json, shown_path(path), folder, origin);
+  const AirSettings air{.drag = sets_parameter(json, "wind", "air_drag"),
+                        .density = sets_parameter(json, "wind", "air_density")};
+  return {parse_scene(json, shown_path(path), folder, origin), air};
+}
+
+FileScene read_scene(const std::string& argument, double triangles, const SceneLimits& limits,
+                     SceneOrigin& origin) {
+  const bool is_mesh = is_mesh_name(argument);
+  if (is_mesh && triangles > 0)
+    throw InputError(shown_path(argument) + ": --set triangles: a mesh file has no grid");
+  FileScene file = is_mesh ? scene_of_mesh(argument, origin)
+                           : scene_of_json(argument, triangles, limits, origin);
+  file.scene.source = argument;
+
+  // Thicknesses that a scene gives for its own mesh do not suit a coarser or finer one.
+  if (is_mesh || triangles > 0) fit_thickness(file.scene);
+  return file;
+}
+
+/// Sets parameters in the order of the command line.
+void set_parameters(FileScene& file, const Overrides& overrides) {
+  for (const auto& [key, value] : overrides.parameters) {
+    set_parameter(file.scene.parameters, key, value);
+    file.air.drag = file.air.drag || key == "wind.air_drag";
+    file.air.density = file.air.density || key == "wind.air_density";
+  }
+}
+
+/// In still air the pressure on a moving cloth brakes it as drag does, and it depends on the
+/// density. Whoever sets the drag to 0 and says nothing about the density wants no air.
+void still_air_without_drag(FileScene& file, SceneOrigin& origin) {
+  const AirSettings& set = file.air;
+  WindParameters& wind = file.scene.parameters.wind;
+  const bool is_still = wind.x == 0 && wind.y == 0 && wind.z == 0;
+  if (!set.drag || set.density || wind.air_drag != 0 || !is_still || wind.air_density == 0) return;
+  wind.air_density = 0;
+  origin.notes.emplace_back(
+      "wind.air_drag is 0 in still air: wind.air_density is set to 0 too, so that nothing brakes "
+      "the cloth; set it to keep the pressure");
 }
 
 }  // namespace
@@ -210,37 +250,17 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
   // Callers that do not ask where the parts came from still need a place for the answer.
   SceneOrigin own;
   if (!origin) origin = &own;
-  AirSettings air;
   const Overrides set = split_overrides(overrides, limits);
-  auto scene = std::make_shared<Scene>();
 
-  // Thicknesses that the scene gives for its own mesh do not suit a coarser or finer one.
-  if (is_mesh_name(argument)) {
-    if (set.triangles > 0)
-      throw InputError(shown_path(argument) + ": --set triangles: a mesh file has no grid");
-    *scene = scene_of_mesh(argument, *origin);
-  } else {
-    *scene = scene_of_json(argument, set.triangles, limits, air, *origin);
-    if (set.triangles > 0) fit_thickness(*scene);
-  }
-  scene->source = argument;
+  // The command line wins over the scene file, so it comes after it.
+  FileScene file = read_scene(argument, set.triangles, limits, *origin);
+  set_parameters(file, set);
+  still_air_without_drag(file, *origin);
 
-  if (scene->cameras.empty()) {
-    std::vector<Vec3d> points;
-    for (const Cloth& cloth : scene->cloths)
-      points.insert(points.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
-    if (!points.empty()) scene->cameras.push_back(framing_camera(points));
-  }
-
-  // Overrides win over the scene's own values, so they are set last.
-  for (const auto& [key, value] : set.parameters) {
-    set_parameter(scene->parameters, key, value);
-    air.drag = air.drag || key == "wind.air_drag";
-    air.density = air.density || key == "wind.air_density";
-  }
-  still_air_without_drag(*scene, air, *origin);
-
-  // The repair depends on the thickness, hence on all parameters.
+  // The repair depends on the thickness, hence on all parameters. The camera looks at the cloth as
+  // the scene has it.
+  auto scene = std::make_shared<Scene>(std::move(file.scene));
+  if (scene->cameras.empty()) add_framing_camera(*scene);
   if (set.repair_start) repair_start(*scene, median_edge(*scene));
   return scene;
 }
