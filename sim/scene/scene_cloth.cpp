@@ -49,15 +49,11 @@ WeldChoice parse_weld(const JsonValue& value) {
   return choice;
 }
 
-void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
-  Cloth& cloth = loaded.cloth;
-  const JsonValue name = object["mesh"];
-  MeshFile file = read_mesh(find_asset(name.text(), folder.path));
-  if (object.has("triangles"))
-    object["triangles"].refuse(
-        "no such key: only grids choose their triangles (see \"subdivide\")");
+/// Reads the mesh of a cloth and its rest shape, a second mesh of the same topology.
+void read_shapes(JsonObject& object, const SceneFolder& folder, Cloth& cloth) {
+  MeshFile file = read_mesh(find_asset(object["mesh"].text(), folder.path));
 
-  // The rest shape is a second mesh of the same topology; its material coordinates win.
+  // The material coordinates of the rest shape win over those of the mesh.
   if (object.has("rest")) {
     MeshFile rest = read_mesh(find_asset(object["rest"].text(), folder.path));
     if (!same_faces(file, rest))
@@ -70,14 +66,14 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   // Without a rest shape of its own, cloth is at rest as it is in its file.
   cloth.mesh = std::move(file.mesh);
   if (cloth.rest.empty()) cloth.rest = cloth.mesh.positions;
-  const std::string file_name = shown_path(name.text());
-  check_cloth_mesh(cloth.mesh, file_name);
-  check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, file_name + " (rest shape)");
+}
+
+/// Parses how a mesh of so many faces is to be welded and subdivided.
+ClothMeshOptions parse_mesh_options(JsonObject& object, const SceneFolder& folder,
+                                    std::size_t faces) {
+  ClothMeshOptions options;
 
   // Welding precedes the transform, but its distance is one in metres of the scene.
-  ClothMeshOptions options;
-  options.object = "cloth " + in_quotes(cloth.name);
-  options.file = file_name;
   if (object.has("weld")) options.weld = parse_weld(object["weld"]);
   if (object.has("transform")) options.scale = parse_transform(object["transform"]).scale;
   if (object.has("subdivide"))
@@ -85,8 +81,26 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
 
   // The limit is checked before the triangles exist, each subdivision making four of one.
   const std::size_t most = static_cast<std::size_t>(folder.limits.triangles);
-  if (options.subdivisions > 0 && cloth.mesh.faces.size() > most >> (2 * options.subdivisions))
+  if (options.subdivisions > 0 && faces > most >> (2 * options.subdivisions))
     object["subdivide"].refuse("at most " + std::to_string(most) + " triangles");
+  return options;
+}
+
+/// Reads the mesh of a cloth and makes of it the one that is simulated.
+void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded) {
+  if (object.has("triangles"))
+    object["triangles"].refuse(
+        "no such key: only grids choose their triangles (see \"subdivide\")");
+  Cloth& cloth = loaded.cloth;
+  read_shapes(object, folder, cloth);
+  const std::string file = shown_path(object["mesh"].text());
+  check_cloth_mesh(cloth.mesh, file);
+  check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, file + " (rest shape)");
+
+  // Every change of the mesh that users should know of is noted.
+  ClothMeshOptions options = parse_mesh_options(object, folder, cloth.mesh.faces.size());
+  options.object = "cloth " + in_quotes(cloth.name);
+  options.file = file;
   std::vector<std::string> notes;
   loaded.layout = prepare_cloth_mesh(cloth, options, notes);
   for (std::string& note : notes) folder.note(std::move(note));
