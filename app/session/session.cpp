@@ -21,42 +21,40 @@ InputEvent release_of(int handle) {
   return event;
 }
 
+/// What went wrong in a step, and what helps.
+struct Failure {
+  std::string what, remedy;
+};
+
+Failure failure_of(const StepReport& report, const Scene* scene) {
+  const std::string collisions = std::to_string(report.impacts_left) +
+                                 (report.impacts_left == 1 ? " collision" : " collisions");
+  if (!report.finite)
+    return {"gave numbers that are not finite, so it was thrown away",
+            "A smaller time step usually helps."};
+
+  // Bodies may leave the cloth no room, above all where it is pinned.
+  const std::string pins = scene ? pins_in_the_way(*scene, ElementNames(*scene), report) : "";
+  if (!pins.empty())
+    return {"was refused: " + pins + " (" + collisions + ")",
+            "The body has to stay away from what is pinned, or the pins have to go."};
+  if (report.no_room)
+    return {"was refused: moving bodies leave the cloth no room (" + collisions + ")",
+            "The bodies have to be further apart, or the thickness smaller."};
+  return {"was refused: " + collisions + " could not be resolved in " +
+              std::to_string(report.rounds) + " rounds",
+          "Let go of the handles, or go on with a smaller time step."};
+}
+
 }  // namespace
 
 std::string failure_sentence(const StepReport& report, const Scene* scene) {
-  char text[640];
-  const std::string pins = scene ? pins_in_the_way(*scene, ElementNames(*scene), report) : "";
-
-  // Each reason has a remedy of its own, with which its sentence ends.
-  if (!report.finite) {
-    std::snprintf(text, sizeof text,
-                  "The step at %.3f s gave numbers that are not finite, so it was thrown away. The "
-                  "cloth is where it was before. A smaller time step usually helps.",
-                  report.time);
-  } else if (!pins.empty()) {
-    std::snprintf(
-        text, sizeof text,
-        "The step at %.3f s was refused: %s (%lld collision%s). The cloth is where it was "
-        "before and nothing has passed through. The body has to stay away from what is "
-        "pinned, or the pins have to go.",
-        report.time, pins.c_str(), static_cast<long long>(report.impacts_left),
-        report.impacts_left == 1 ? "" : "s");
-  } else if (report.no_room) {
-    std::snprintf(text, sizeof text,
-                  "The step at %.3f s was refused: moving bodies leave the cloth no room (%lld "
-                  "collision%s). The cloth is where it was before and nothing has passed through. "
-                  "The bodies have to be further apart, or the thickness smaller.",
-                  report.time, static_cast<long long>(report.impacts_left),
-                  report.impacts_left == 1 ? "" : "s");
-  } else {
-    std::snprintf(text, sizeof text,
-                  "The step at %.3f s was refused: %lld collision%s could not be resolved in %lld "
-                  "rounds. The cloth is where it was before and nothing has passed through. Let "
-                  "go of the handles, or go on with a smaller time step.",
-                  report.time, static_cast<long long>(report.impacts_left),
-                  report.impacts_left == 1 ? "" : "s", static_cast<long long>(report.rounds));
-  }
-  return text;
+  const Failure failure = failure_of(report, scene);
+  char time[32];
+  std::snprintf(time, sizeof time, "%.3f", report.time);
+  return "The step at " + std::string(time) + " s " + failure.what +
+         ". The cloth is where it was before" +
+         (report.finite ? " and nothing has passed through. " : ". ") + failure.remedy;
 }
 
 Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
@@ -70,7 +68,7 @@ Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
   recording_.overrides = options_.overrides;
   start_.snapshot = simulator_->snapshot();
   start_.parameters = recorded_parameters_;
-  simulator_->positions(told_positions_);
+  simulator_->positions(positions_);
   if (refused()) fail(options_.refusal);
   publish(true);
   published_.take();
@@ -378,17 +376,17 @@ void Session::note(const std::string& text) {
 
 /// Publishes the positions and handles. After the device is lost, the last positions stay.
 void Session::read_positions(PublishedState& state) {
-  const bool told = guarded([&] {
+  const bool is_read = guarded([&] {
     simulator_->positions_on_device(state.on_device);  // first: the other one waits for the device
-    simulator_->positions(told_positions_);
+    simulator_->positions(positions_);
     state.handles = simulator_->handles();
   });
 
-  if (!told) {
+  if (!is_read) {
     if (state.on_device) state.on_device->failure = "the solver stopped";
     state.handles.clear();
   }
-  state.positions = told_positions_;
+  state.positions = positions_;
 
   // Events on their way count already: who sees a jump in time must not lose a grab made after it.
   for (const InputEvent& event : pending_)

@@ -154,7 +154,7 @@ class Session {
   HistoryEntry start_;
   History history_;
   StepReport report_;
-  std::vector<Vec3f> told_positions_;  ///< by the simulator, the newest [m] (V)
+  std::vector<Vec3f> positions_;  ///< newest of the simulator [m] (V), read_positions
   bool failed_ = false;
   std::string failure_;
   std::uint64_t rewinds_ = 0, notes_ = 0;
