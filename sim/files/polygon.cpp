@@ -3,27 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "sim/files/corner_tree.h"
+#include "sim/files/grid_point.h"
+#include "sim/files/ring_crossings.h"
 
 namespace icloth {
 namespace {
 
-constexpr double kFlattest = 1e-10;     // of the area against the square of the extent
-constexpr double kThinnest = 1e-6;      // of twice a triangle's area against its longest edge²
+constexpr std::size_t kMostFanCorners = 32;  // a larger fan would crowd its first corner
+constexpr double kFlattest = 1e-10;          // of the area against the square of the extent
+constexpr double kThinnest = 1e-6;  // of twice a triangle's area against its longest edge²
+// Boxes of corners that may be compared with triangles, altogether and for each corner: sensible
+// polygons need less than a quarter of them.
+constexpr std::int64_t kMostTests = 1'000'000, kMostTestsOfCorner = 4000;
 constexpr double kGridCells = 1 << 29;  // along the extent: products of differences fit 64 bits
 
-/// Place on a grid in the plane of the polygon: what turns left or right is decided exactly.
-struct GridPoint {
-  std::int64_t x, y;
-  bool operator==(const GridPoint&) const = default;
-};
-
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// Twice the signed area of a triangle.
-std::int64_t turn(GridPoint a, GridPoint b, GridPoint c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
 
 double length2(GridPoint a, GridPoint b) {
   const auto x = static_cast<double>(b.x - a.x), y = static_cast<double>(b.y - a.y);
@@ -79,28 +78,52 @@ bool is_fan(const std::vector<GridPoint>& x) {
   return true;
 }
 
-bool cross_each_other(GridPoint a, GridPoint b, GridPoint c, GridPoint d) {
-  const auto sign = [](std::int64_t value) { return (value > 0) - (value < 0); };
-  return sign(turn(a, b, c)) * sign(turn(a, b, d)) < 0 &&
-         sign(turn(c, d, a)) * sign(turn(c, d, b)) < 0;
-}
+enum class Outcome { done, stuck, too_long };
 
-/// Whether two edges cross; only edges whose ranges of x overlap are compared.
-bool crosses_itself(const std::vector<GridPoint>& x) {
-  const std::size_t n = x.size();
-  const auto left = [&](std::size_t i) { return std::min(x[i].x, x[(i + 1) % n].x); };
-  const auto right = [&](std::size_t i) { return std::max(x[i].x, x[(i + 1) % n].x); };
+using Ring = std::vector<Index>;
+using Area = __int128;
 
-  // In the order of their left ends, the edges that can cross an edge stand right behind it.
-  std::vector<std::size_t> edges(n);
-  std::iota(edges.begin(), edges.end(), std::size_t{0});
-  std::ranges::sort(edges, {}, [&](std::size_t i) { return std::pair(left(i), i); });
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t l = k + 1; l < n && left(edges[l]) <= right(edges[k]); ++l) {
-      const std::size_t i = edges[k], j = edges[l];
-      if (cross_each_other(x[i], x[(i + 1) % n], x[j], x[(j + 1) % n])) return true;
+/// Twice the area of the triangle from the origin.
+Area from_origin(GridPoint a, GridPoint b) { return Area{a.x} * b.y - Area{a.y} * b.x; }
+
+/// Splits a ring of points where it comes back to a place, if both parts turn left: a polygon that
+/// touches itself at a corner becomes several. `drop_spikes`: a corner between two that are at one
+/// place is left out.
+std::vector<Ring> split_where_touching(const std::vector<GridPoint>& x, bool drop_spikes = false) {
+  std::vector<Ring> rings;
+  Area rest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) rest += from_origin(x[i], x[(i + 1) % x.size()]);
+
+  // The corners so far that belong to no finished ring, the area that their path sweeps, and where
+  // among them a place was met last.
+  Ring path;
+  std::vector<Area> swept;
+  std::map<GridPoint, std::size_t> met;
+  for (Index i = 0; i < static_cast<Index>(x.size()); ++i) {
+    const GridPoint p = x[at(i)];
+    if (const auto found = met.find(p); found != met.end()) {
+      const std::size_t begin = found->second;
+      const Area area = swept.back() - swept[begin] + from_origin(x[at(path.back())], p);
+      const bool is_polygon = area > 0 && rest - area > 0;
+      const bool is_spike = drop_spikes && path.size() - begin == 2;
+      if (is_polygon || is_spike) {
+        if (is_polygon)
+          rings.emplace_back(path.begin() + static_cast<std::ptrdiff_t>(begin), path.end());
+        rest -= area;
+        for (std::size_t k = begin; k < path.size(); ++k) {
+          const auto old = met.find(x[at(path[k])]);
+          if (old != met.end() && old->second >= begin) met.erase(old);
+        }
+        path.resize(begin);
+        swept.resize(begin);
+      }
     }
-  return false;
+    swept.push_back(path.empty() ? 0 : swept.back() + from_origin(x[at(path.back())], p));
+    met[p] = path.size();
+    path.push_back(i);
+  }
+  rings.push_back(std::move(path));
+  return rings;
 }
 
 /// Cuts off one corner after the other whose triangle holds no other corner, the best shaped one
@@ -112,12 +135,15 @@ class EarClipper {
     corners_.resize(points.size());
     for (Index i = 0; i < n; ++i) corners_[at(i)] = {(i + n - 1) % n, (i + 1) % n};
     left_ = n;
+    tests_left_ = kMostTests + kMostTestsOfCorner * n;
     update_all();
   }
 
-  /// Appends the triangles; false where no corner can be cut off any more.
-  bool cut(std::vector<Triangle>& triangles) {
+  /// Appends the triangles, unless no corner can be cut off any more or the search for one takes
+  /// too long.
+  Outcome cut(std::vector<Triangle>& triangles) {
     while (left_ > 3) {
+      if (tests_left_ < 0) return Outcome::too_long;
       Index ear = best_ear();
       if (ear == kNone && careful_) {
         // Only thin triangles are left, or such that leave thin ones.
@@ -125,7 +151,7 @@ class EarClipper {
         update_all();
         ear = best_ear();
       }
-      if (ear == kNone) return false;
+      if (ear == kNone) return Outcome::stuck;
       triangles.push_back(triangle_of(ear));
       cut_off(ear);
     }
@@ -133,7 +159,8 @@ class EarClipper {
     // The corners that remain have to turn as the polygon does.
     const Triangle last = triangle_of(first_);
     triangles.push_back(last);
-    return turn(x_[at(last[0])], x_[at(last[1])], x_[at(last[2])]) > 0;
+    const bool turns_left = turn(x_[at(last[0])], x_[at(last[1])], x_[at(last[2])]) > 0;
+    return turns_left ? Outcome::done : Outcome::stuck;
   }
 
  private:
@@ -142,7 +169,27 @@ class EarClipper {
     bool straight = false;  ///< or nearly so, or turns right: others must mind it
     bool gone = false;
     double shape = 0;  ///< of its triangle, 0: it cannot be cut off
+    Index load = 0;    ///< triangles that end here so far
+    Index crowd = 0;   ///< of the ends of its triangle, see crowd_of
   };
+
+  /// An ear, in the order in which they are cut off.
+  using Ear = std::tuple<Index, double, Index>;
+  Ear ear(Index i) const { return {corners_[at(i)].crowd, -corners_[at(i)].shape, i}; }
+
+  /// How many triangles the ends of a corner's triangle have already, in coarse steps: the best
+  /// shaped ears of a round border would otherwise all end at one corner.
+  Index crowd_of(Index i) const {
+    const Corner& corner = corners_[at(i)];
+    return std::max(corners_[at(corner.before)].load, corners_[at(corner.after)].load) / 8;
+  }
+
+  /// Puts an ear at its new place in the order after an end of its triangle has got another one.
+  void move_ear(Index i) {
+    if (ears_.erase(ear(i)) == 0) return;
+    corners_[at(i)].crowd = crowd_of(i);
+    ears_.insert(ear(i));
+  }
 
   Triangle triangle_of(Index i) const { return {corners_[at(i)].before, i, corners_[at(i)].after}; }
 
@@ -152,70 +199,100 @@ class EarClipper {
     const GridPoint a = x_[at(t[0])], b = x_[at(t[1])], c = x_[at(t[2])], p = x_[at(i)];
     if (i == t[0] || i == t[1] || i == t[2] || p == a || p == b || p == c) return false;
     if (turn(a, b, p) < 0 || turn(b, c, p) < 0) return false;
-    const double beyond = careful_ ? kThinnest * length2(c, a) : 0;
-    return static_cast<double>(turn(c, a, p)) >= -beyond;
+    return static_cast<double>(turn(c, a, p)) >= -beyond(t);
+  }
+
+  double beyond(const Triangle& t) const {
+    return careful_ ? kThinnest * length2(x_[at(t[2])], x_[at(t[0])]) : 0;
   }
 
   double least_shape() const { return careful_ ? kThinnest : 0; }
 
   void update(Index i) {
     Corner& corner = corners_[at(i)];
+    ears_.erase(ear(i));
     const Triangle t = triangle_of(i);
     const GridPoint a = x_[at(t[0])], b = x_[at(t[1])], c = x_[at(t[2])];
     const double shape = thickness(a, b, c);
     corner.straight = shape <= least_shape();
     corner.shape = 0;
+    straight_.set(i, corner.straight);
     if (corner.straight) return;
 
     // A triangle that holds another corner is no ear.
-    for (const Index other : straight_) {
-      const Corner& o = corners_[at(other)];
-      if (!o.gone && o.straight && holds(t, other)) return;
-    }
+    const bool taken = straight_.any({a, b, c}, beyond(t), tests_left_,
+                                     [&](Index other) { return holds(t, other); });
+    if (taken) return;
     corner.shape = shape;
+    corner.crowd = crowd_of(i);
+    ears_.insert(ear(i));
   }
 
   void update_all() {
     // Whether a triangle is empty is asked of the straight corners, so they are found first.
-    straight_.clear();
+    std::vector<Index> straight;
     const auto n = static_cast<Index>(corners_.size());
     for (Index i = 0; i < n; ++i) {
       const Triangle t = triangle_of(i);
       Corner& corner = corners_[at(i)];
       corner.straight = thickness(x_[at(t[0])], x_[at(t[1])], x_[at(t[2])]) <= least_shape();
-      if (!corner.gone && corner.straight) straight_.push_back(i);
+      if (!corner.gone && corner.straight) straight.push_back(i);
     }
+    straight_ = CornerTree(x_, straight);
     for (Index i = 0; i < n; ++i)
       if (!corners_[at(i)].gone) update(i);
   }
 
-  Index best_ear() const {
-    Index best = kNone, i = first_;
-    for (Index k = 0; k < left_; ++k, i = corners_[at(i)].after) {
-      const double shape = corners_[at(i)].shape;
-      if (shape > (best == kNone ? 0 : corners_[at(best)].shape)) best = i;
-    }
-    return best;
-  }
+  /// The first of the best shaped ones among those whose ends are least crowded.
+  Index best_ear() const { return ears_.empty() ? kNone : std::get<2>(*ears_.begin()); }
 
   /// Takes a corner out of the ring; what its neighbours can do changes, and nothing else.
   void cut_off(Index i) {
     const auto [before, after] = std::pair(corners_[at(i)].before, corners_[at(i)].after);
+    ears_.erase(ear(i));
+    straight_.set(i, false);
     corners_[at(i)].gone = true;
     corners_[at(before)].after = after;
     corners_[at(after)].before = before;
     if (first_ == i) first_ = after;
     --left_;
+    ++corners_[at(before)].load;
+    ++corners_[at(after)].load;
     update(before);
     update(after);
+    move_ear(corners_[at(before)].before);
+    move_ear(corners_[at(after)].after);
   }
 
   const std::vector<GridPoint>& x_;
   std::vector<Corner> corners_;
-  std::vector<Index> straight_;  ///< corners that were straight or turned right at the start
+  CornerTree straight_;          ///< corners that were straight or turned right at the start
+  std::set<Ear> ears_;           ///< corners that can be cut off
+  std::int64_t tests_left_ = 0;  ///< of boxes against triangles
   Index first_ = 0, left_ = 0;
   bool careful_ = true;  ///< no thin triangles, and none that leave thin ones
 };
+
+/// Cuts one ring after the other; appends nothing where that fails.
+Outcome cut_rings(const std::vector<GridPoint>& x, const std::vector<Ring>& rings,
+                  std::vector<Triangle>& triangles) {
+  const std::size_t before = triangles.size();
+  std::vector<GridPoint> points;
+  std::vector<Triangle> found;
+  for (const Ring& ring : rings) {
+    points.clear();
+    found.clear();
+    for (const Index i : ring) points.push_back(x[at(i)]);
+    const Outcome outcome = points.size() < 3 ? Outcome::stuck : EarClipper(points).cut(found);
+    if (outcome != Outcome::done) {
+      triangles.resize(before);
+      return outcome;
+    }
+    for (const Triangle& t : found)
+      triangles.push_back({ring[at(t[0])], ring[at(t[1])], ring[at(t[2])]});
+  }
+  return Outcome::done;
+}
 
 /// Numbers of the corners that are not at the place of the one before.
 std::vector<Index> distinct_corners(std::span<const Vec3d> corners) {
@@ -235,13 +312,18 @@ std::string cut_ring(std::span<const Vec3d> corners, std::vector<Triangle>& tria
 
   // Most polygons are convex: their fan needs no further tests.
   const std::vector<GridPoint> points = project(corners, normalized(normal), extent);
-  if (is_fan(points)) {
+  if (corners.size() <= kMostFanCorners && is_fan(points)) {
     for (Index i = 2; i < n; ++i) triangles.push_back({0, i - 1, i});
     return "";
   }
-  if (crosses_itself(points) || !EarClipper(points).cut(triangles))
-    return "a polygon that does not cross itself";
-  return "";
+  if (!crosses_itself(points)) {
+    Outcome outcome = cut_rings(points, split_where_touching(points), triangles);
+    if (outcome == Outcome::stuck)
+      outcome = cut_rings(points, split_where_touching(points, true), triangles);
+    if (outcome == Outcome::done) return "";
+    if (outcome == Outcome::too_long) return "a polygon that is cut in less time";
+  }
+  return "a polygon that does not cross itself";
 }
 
 }  // namespace

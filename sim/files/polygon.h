@@ -9,17 +9,18 @@
 
 namespace icloth {
 
-/// Corners that one polygon may have; the time that a cut takes grows with their square.
-inline constexpr std::size_t kMostCorners = 20'000;
+/// Corners that one polygon may have.
+inline constexpr std::size_t kMostCorners = 100'000;
 
 /// Cuts a polygon by ear clipping, seen along its Newell normal: it may be concave, have corners in
-/// a straight line, turn either way and be slightly bent. Appends triangles of corner numbers that
-/// turn as the polygon does and together cover it once. Corners that repeat the place of the one
-/// before are left out. A triangle and a convex polygon without straight corners become a fan
-/// around the first corner.
+/// a straight line, touch itself, turn either way and be slightly bent. Appends triangles of corner
+/// numbers that turn as the polygon does and together cover it once. Corners that repeat the place
+/// of the one before are left out. A triangle and a convex polygon of at most 32 corners, none of
+/// them straight, become a fan around the first corner.
 ///
 /// Returns an empty text, or what was expected of a polygon that cannot be cut: it crosses itself,
-/// spans no area or has more than kMostCorners corners. Nothing is appended then.
+/// spans no area, has more than kMostCorners corners, or is so entangled that the cut would take
+/// long. Nothing is appended then.
 std::string cut_polygon(std::span<const Vec3d> corners, std::vector<Triangle>& triangles);
 
 /// Whether two files have the same vertices and faces, however their polygons are cut.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "sim/files/mesh_formats.h"
+#include "sim/files/ring_crossings.h"
 
 namespace icloth {
 namespace {
@@ -92,6 +93,20 @@ TEST(Polygon, ConvexOnesBecomeAFan) {
   EXPECT_EQ(cut({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}}), fan);
 }
 
+TEST(Polygon, LargeConvexOnesCrowdNoCorner) {
+  std::vector<Vec3d> disc;
+  for (int i = 0; i < 500; ++i)
+    disc.push_back({std::cos(std::numbers::pi * i / 250), std::sin(std::numbers::pi * i / 250), 0});
+  std::vector<int> faces(disc.size());
+  double sum = 0;
+  for (const Triangle& t : cut(disc)) {
+    for (const Index c : t) ++faces[static_cast<std::size_t>(c)];
+    sum += area(disc, t);
+  }
+  EXPECT_LT(*std::ranges::max_element(faces), 20);
+  EXPECT_NEAR(sum, norm(area_vector(disc)), 1e-9);
+}
+
 TEST(Polygon, EveryPointIsCoveredOnce) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
@@ -165,6 +180,61 @@ TEST(Polygon, AHoleThatABridgeOpens) {
   EXPECT_NEAR(sum, 3, 1e-9);
 }
 
+TEST(Polygon, TouchesItselfAtACorner) {
+  // Two and three triangles around a common point, then a spike to the outside and to the inside.
+  const std::vector<std::vector<Vec3d>> polygons = {
+      {{0, 0, 0}, {2, 2, 0}, {4, 0, 0}, {4, 4, 0}, {2, 2, 0}, {0, 4, 0}},
+      {{0, 0, 0},
+       {1, -1, 0},
+       {1, 1, 0},
+       {0, 0, 0},
+       {0.5, 2, 0},
+       {-0.5, 2, 0},
+       {0, 0, 0},
+       {-1, 1, 0},
+       {-1, -1, 0}},
+      {{0, 0, 0}, {3, 0, 0}, {5, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}},
+      {{0, 0, 0}, {3, 0, 0}, {3, 1.5, 0}, {1, 1.5, 0}, {3, 1.5, 0}, {3, 3, 0}, {0, 3, 0}}};
+  for (const std::vector<Vec3d>& polygon : polygons) {
+    double sum = 0;
+    for (const Triangle& t : cut(polygon)) {
+      EXPECT_GT(area(polygon, t), 1e-9);
+      sum += area(polygon, t);
+    }
+    EXPECT_NEAR(sum, norm(area_vector(polygon)), 1e-9);
+  }
+}
+
+/// Every pair of edges is compared.
+bool slow_crossing(const std::vector<GridPoint>& x) {
+  const auto sign = [](std::int64_t value) { return (value > 0) - (value < 0); };
+  const std::size_t n = x.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const GridPoint a = x[i], b = x[(i + 1) % n], c = x[j], d = x[(j + 1) % n];
+      if (sign(turn(a, b, c)) * sign(turn(a, b, d)) < 0 &&
+          sign(turn(c, d, a)) * sign(turn(c, d, b)) < 0)
+        return true;
+    }
+  return false;
+}
+
+TEST(Polygon, CrossingsAreFoundAsAmongAllPairsOfEdges) {
+  // Rings of a few points on a coarse lattice touch, overlap and cross in every way.
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> place(0, 6), count(3, 9);
+  int crossing = 0, free = 0;
+  for (int trial = 0; trial < 200'000; ++trial) {
+    std::vector<GridPoint> ring(static_cast<std::size_t>(count(random)));
+    for (GridPoint& p : ring) p = {place(random), place(random)};
+    const bool expected = slow_crossing(ring);
+    ASSERT_EQ(crosses_itself(ring), expected) << "trial " << trial;
+    ++(expected ? crossing : free);
+  }
+  EXPECT_GT(crossing, 1000);
+  EXPECT_GT(free, 1000);
+}
+
 TEST(Polygon, WhatCannotBeCutIsRefused) {
   std::vector<Triangle> none;
   EXPECT_NE(cut_polygon(std::vector<Vec3d>{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}}, none)
@@ -198,7 +268,7 @@ TEST(Polygon, TheMostCornersAreCutAndOneMoreIsRefused) {
   EXPECT_NEAR(sum, norm(area_vector(comb)), 1e-6 * sum);
   comb.push_back({0, -0.5, 0});
   std::vector<Triangle> none;
-  EXPECT_EQ(cut_polygon(comb, none), "at most 20000 corners");
+  EXPECT_EQ(cut_polygon(comb, none), "at most " + std::to_string(kMostCorners) + " corners");
 }
 
 TEST(Polygon, TextureCoordinatesGoWithTheCorners) {
