@@ -150,6 +150,12 @@ std::vector<BodyClip> clips_of(const aiScene& scene) {
   return clips;
 }
 
+std::size_t morphs_of(const aiScene& scene) {
+  std::size_t morphs = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) morphs += scene.mMeshes[m]->mNumAnimMeshes;
+  return morphs;
+}
+
 /// Bones with weights of all meshes.
 std::size_t bones_of(const aiScene& scene) {
   std::size_t bones = 0;
@@ -185,6 +191,7 @@ Body read_with_assimp(const std::string& path) {
   // Clips and bones are read for notes, since they are not played.
   body.clips = clips_of(*scene);
   body.bones = bones_of(*scene);
+  body.morphs = morphs_of(*scene);
   return body;
 }
 

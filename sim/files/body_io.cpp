@@ -17,7 +17,7 @@
 
 // The child sends the length of a JSON text [8 bytes], the text, and, where the body was read, its
 // positions and faces as they are in memory. The text is {"error": …} or {"vertices", "faces",
-// "bones", "clips": [{"name", "duration"}]}.
+// "bones", "morphs", "clips": [{"name", "duration"}]}.
 
 namespace icloth {
 namespace {
@@ -46,6 +46,7 @@ nlohmann::json head_of(const Body& body) {
   nlohmann::json head{{"vertices", body.mesh.positions.size()},
                       {"faces", body.mesh.faces.size()},
                       {"bones", body.bones},
+                      {"morphs", body.morphs},
                       {"clips", nlohmann::json::array()}};
   for (const BodyClip& clip : body.clips)
     head["clips"].push_back({{"name", clip.name}, {"duration", clip.duration}});
@@ -120,6 +121,7 @@ class Decoder {
     // The arrays are only sized here; the caller fills them from those bytes.
     Body body;
     body.bones = count("bones");
+    body.morphs = count("morphs");
     for (const JsonValue& item : object.required("clips").items()) {
       JsonObject clip(item);
       body.clips.push_back({clip.required("name").text(), clip.required("duration").number()});
@@ -156,7 +158,7 @@ Body read_in_child(const std::string& path) {
 
 Body read_body(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".obj" || extension == ".ply") return {read_mesh(path).mesh, {}, 0};
+  if (extension == ".obj" || extension == ".ply") return {read_mesh(path).mesh, {}, 0, 0};
   return read_in_child(path);
 }
 

@@ -19,6 +19,7 @@ struct Body {
   TriangleMesh mesh;            ///< bind pose, in the order of the file
   std::vector<BodyClip> clips;  ///< not played: the mesh is the bind pose
   std::size_t bones = 0;        ///< bones that some vertex follows
+  std::size_t morphs = 0;       ///< shapes that meshes can be blended with; not applied
 };
 
 /// Static pose of a body: OBJ and PLY by the own readers, everything else (glTF, FBX, Collada …) by

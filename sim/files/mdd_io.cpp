@@ -83,7 +83,12 @@ PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vert
 
   // The times of all frames come first, then the points of one frame after the other.
   PointCache cache;
-  cache.frame_rate = even_rate(load_times(data, frames, path));
+  const std::vector<double> times = load_times(data, frames, path);
+  cache.frame_rate = even_rate(times);
+  if (cache.frame_rate == 0 && times.front() != times.back())
+    cache.unused.emplace_back(
+        "times of its frames that are not even, which are not used: frame_rate says how fast it is "
+        "played");
   data += frames * sizeof(float);
   cache.frames.resize(frames);
   for (std::size_t f = 0; f < frames; ++f) {
@@ -92,6 +97,10 @@ PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vert
       cache.frames[f].push_back({load_float(data), load_float(data + 4), load_float(data + 8)});
     check_frame(cache.frames[f], f, path);
   }
+  const auto rest = static_cast<std::size_t>(bytes.data() + bytes.size() - data);
+  if (rest > 0)
+    cache.unused.push_back(std::to_string(rest) + " bytes behind its " + std::to_string(frames) +
+                           " frames, which are not used");
   return cache;
 }
 

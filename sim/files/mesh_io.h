@@ -39,8 +39,12 @@ void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
 /// Faces that may share an edge of a cloth: every two of them resist bending against each other, so
 /// time and memory grow with their square.
 inline constexpr std::size_t kMostFacesOnEdge = 16;
+/// Faces that may share a vertex of a cloth: all of them are near each other, so that time and
+/// memory of collision tests grow with the square of their number.
+inline constexpr std::size_t kMostFacesAtVertex = 4096;
 
-/// Throws InputError naming the first edge of a cloth with more than kMostFacesOnEdge faces.
+/// Throws InputError naming the first edge of a cloth with more than kMostFacesOnEdge faces, or the
+/// vertex with most of them, if it has more than kMostFacesAtVertex.
 /// `numbers` are the vertices as the file counts them; empty: as the mesh does.
 void check_edges(const TriangleMesh& mesh, const std::string& name,
                  std::span<const Index> numbers = {});
@@ -49,6 +53,7 @@ void check_edges(const TriangleMesh& mesh, const std::string& name,
 struct PointCache {
   std::vector<std::vector<Vec3f>> frames;  ///< (frames)(V) [m], at least one frame
   double frame_rate = 0;                   ///< [1/s]; 0: the file does not say
+  std::vector<std::string> unused;         ///< parts of the file that are not used, a clause each
 };
 
 /// PC2 or MDD by extension. `vertices` is the expected count (checked before memory is taken).

@@ -3,6 +3,7 @@
 
 #include "sim/files/error.h"
 #include "sim/files/mesh_formats.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -59,6 +60,19 @@ PointCache parse_pc2(std::string_view bytes, const std::string& path, Index vert
     data += frame.size() * sizeof(Vec3f);
     check_frame(frame, f, path);
   }
+
+  // The header counts in frames of an animation whose rate it does not say. Blender starts at 1.
+  if (header.sampling != 1)
+    cache.unused.push_back("a sampling of " + rounded_text(double{header.sampling}, 4) +
+                           " frames in its header, which is not used: frame_rate counts its own "
+                           "frames");
+  if (header.start != 0 && header.start != 1)
+    cache.unused.push_back("a start at frame " + rounded_text(double{header.start}, 4) +
+                           " in its header, which is not used: its first frame is at time 0");
+  const auto rest = static_cast<std::size_t>(bytes.data() + bytes.size() - data);
+  if (rest > 0)
+    cache.unused.push_back(std::to_string(rest) + " bytes behind its " +
+                           std::to_string(header.frames) + " frames, which are not used");
   return cache;
 }
 

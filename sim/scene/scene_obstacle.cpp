@@ -32,10 +32,13 @@ std::vector<Keyframe> parse_motion(const JsonValue& value) {
   return motion;
 }
 
-/// Clips are not played yet; a user who brings one must hear of it.
+/// Clips and morph targets are not used yet; a user who brings some must hear of it.
 void note_clips(const Body& body, const std::string& file, const std::string& object,
                 const SceneFolder& folder) {
   constexpr std::size_t kMostNamed = 4;
+  if (body.morphs > 0)
+    folder.note(object + ": " + file + " has morph targets (" + std::to_string(body.morphs) +
+                "), which are not applied: the body keeps its base shape");
   if (body.clips.empty()) {
     if (body.bones > 0)
       folder.note(object + ": " + file + " has a skeleton of " + std::to_string(body.bones) +
@@ -83,6 +86,9 @@ void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Plac
   if (extension != ".pc2" && extension != ".mdd") object["animation"].refuse("a .pc2 or .mdd file");
   const auto vertices = static_cast<Index>(obstacle.mesh.positions.size());
   PointCache cache = read_point_cache(find_asset(name, folder.path), vertices);
+  for (const std::string& unused : cache.unused)
+    folder.note("obstacle " + in_quotes(obstacle.name) + ": " + shown_path(name) + " has " +
+                unused);
   if (cache.frame_rate > 0) obstacle.frame_rate = cache.frame_rate;
   obstacle.frames = std::move(cache.frames);
   for (auto& frame : obstacle.frames)

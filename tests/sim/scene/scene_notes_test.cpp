@@ -61,6 +61,48 @@ TEST(SceneNotes, SayHowFarAPointCacheIsFromItsMesh) {
                   .notes.empty());
 }
 
+TEST(SceneNotes, SayWhatOfAPointCacheIsNotUsed) {
+  const TemporaryFolder folder;
+  folder.write("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const auto notes = [&](const std::string& name, const std::string& bytes) {
+    folder.write(name, bytes);
+    return load(folder,
+                R"(, "obstacles": [{"name": "b", "mesh": "s.obj", "animation": ")" + name + "\"}]")
+        .notes;
+  };
+  const auto with = [](std::string bytes, std::size_t place, float value) {
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+    return bytes;
+  };
+  const std::string pc2 = square_cache(0);
+  EXPECT_TRUE(notes("a.pc2", pc2).empty());
+  EXPECT_TRUE(notes("a.pc2", with(pc2, 20, 1)).empty()) << "Blender counts from 1";
+  for (const auto& [bytes, part] : std::vector<std::pair<std::string, std::string>>{
+           {with(pc2, 20, 12), "start at frame 12"},
+           {with(pc2, 24, 0.5), "sampling of 0.5 frames"},
+           {pc2 + "1234567", "7 bytes behind its 1 frames"}}) {
+    const std::vector<std::string> found = notes("a.pc2", bytes);
+    ASSERT_EQ(found.size(), 1u) << part;
+    EXPECT_TRUE(holds(found[0], "obstacle 'b': a.pc2 has ") && holds(found[0], part)) << found[0];
+    EXPECT_TRUE(holds(found[0], "not used")) << found[0];
+  }
+
+  // Three frames of an MDD file at 0, 1 and 5 s: no one rate fits.
+  std::string mdd;
+  const auto big_endian = [&](const void* value) {
+    const auto* bytes = static_cast<const char*>(value);
+    for (int k = 3; k >= 0; --k) mdd += bytes[k];
+  };
+  for (const std::int32_t count : {3, 4}) big_endian(&count);
+  for (const float time : {0.0f, 1.0f, 5.0f}) big_endian(&time);
+  for (int f = 0; f < 3; ++f)
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f})
+      big_endian(&x);
+  const std::vector<std::string> uneven = notes("a.mdd", mdd);
+  ASSERT_EQ(uneven.size(), 1u);
+  EXPECT_TRUE(holds(uneven[0], "times of its frames that are not even")) << uneven[0];
+}
+
 TEST(SceneNotes, NoDragInStillAirMeansNoAir) {
   const TemporaryFolder folder;
   const auto density = [&](const std::string& rest, const std::vector<std::string>& set = {}) {
