@@ -68,6 +68,10 @@ void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name) {
 
 void check_edges(const TriangleMesh& mesh, const std::string& name,
                  std::span<const Index> numbers) {
+  const auto number = [&](Index v) {
+    return std::to_string(numbers.empty() ? v : numbers[static_cast<std::size_t>(v)]);
+  };
+
   // After sorting by vertices, all sides of one edge stand together.
   std::vector<std::array<Index, 2>> edges;
   edges.reserve(3 * mesh.faces.size());
@@ -79,13 +83,20 @@ void check_edges(const TriangleMesh& mesh, const std::string& name,
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end] == edges[begin]) ++end;
     if (end - begin <= kMostFacesOnEdge) continue;
-    const auto number = [&](Index v) {
-      return std::to_string(numbers.empty() ? v : numbers[static_cast<std::size_t>(v)]);
-    };
     throw InputError(name + ": edge between vertices " + number(edges[begin][0]) + " and " +
                      number(edges[begin][1]) + ": " + std::to_string(end - begin) +
                      " faces, expected at most " + std::to_string(kMostFacesOnEdge));
   }
+
+  // The faces of every vertex are counted.
+  std::vector<std::size_t> count(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.faces)
+    for (const Index v : t) ++count[static_cast<std::size_t>(v)];
+  const auto most = std::ranges::max_element(count);
+  if (most != count.end() && *most > kMostFacesAtVertex)
+    throw InputError(name + ": vertex " + number(static_cast<Index>(most - count.begin())) + ": " +
+                     std::to_string(*most) + " faces, expected at most " +
+                     std::to_string(kMostFacesAtVertex));
 }
 
 void write_obj(const std::string& path, std::span<const NamedMesh> objects,

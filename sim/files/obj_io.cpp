@@ -21,6 +21,10 @@ class ObjParser {
   ObjParser(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
   MeshFile parse() {
+    // Some editors put a mark in front of UTF-8, which must not hide the first vertex.
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+
     while (!text_.empty()) {
       line_ = next_line_;
       parse_line(next_statement());

@@ -1,6 +1,7 @@
 #include "sim/scene/cloth_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "sim/files/error.h"
@@ -18,14 +19,17 @@ std::string count_of(std::size_t some, std::size_t all) {
   return std::to_string(some) + " of " + std::to_string(all) + " vertices";
 }
 
-double median_edge(const TriangleMesh& mesh) {
+/// A distance that a gap of a seam may have and an edge may not: far below the median edge, and
+/// below the shortest one, so that welding by it loses no face.
+double seam_gap(const TriangleMesh& mesh) {
   std::vector<double> lengths;
   for (const Triangle& t : mesh.faces)
     for (std::size_t c = 0; c < 3; ++c)
       lengths.push_back(norm(mesh.positions[at(t[(c + 1) % 3])] - mesh.positions[at(t[c])]));
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::ranges::nth_element(lengths, middle);
-  return *middle;
+  const double shortest = *std::min_element(lengths.begin(), middle + 1);
+  return std::min(1e-3 * *middle, 0.5 * shortest);
 }
 
 /// Moves near vertices together; a face must not lose a corner by that.
@@ -56,6 +60,20 @@ std::size_t count_welded(const FileLayout& layout, std::size_t count) {
   return static_cast<std::size_t>(used - kept);
 }
 
+/// A length with three digits, and all of those before the point: 0.412, 1800.
+std::string metres_text(double length) {
+  return length >= 100 && length < 1e7 ? std::to_string(std::llround(length))
+                                       : rounded_text(length);
+}
+
+/// Faces with the same vertices as an earlier one.
+std::size_t count_repeated_faces(const TriangleMesh& mesh) {
+  std::vector<Triangle> faces = mesh.faces;
+  for (Triangle& t : faces) std::ranges::sort(t);
+  std::ranges::sort(faces);
+  return static_cast<std::size_t>(faces.end() - std::unique(faces.begin(), faces.end()));
+}
+
 /// Notes how many vertices are unused, welded or nearly at one place; `count` come from the file.
 void note_vertices(const TriangleMesh& mesh, const FileLayout& layout,
                    const ClothMeshOptions& options, std::size_t count, const WeldReport& report,
@@ -76,10 +94,16 @@ void note_vertices(const TriangleMesh& mesh, const FileLayout& layout,
                     " lie at the same place as earlier ones, but not in the rest shape, and are "
                     "not welded");
 
+  if (const std::size_t repeated = count_repeated_faces(mesh); repeated > 0)
+    notes.push_back(options.object + ": " + std::to_string(repeated) + " of " +
+                    std::to_string(mesh.faces.size()) +
+                    " faces have the same vertices as earlier ones: the cloth is there twice, with "
+                    "twice the mass and the stiffness");
+
   // Seams that rounding opened by a little cannot run, and look closed in every picture.
   if (options.weld.asked || report.apart > 0) return;
   const double largest = std::max({options.scale.x, options.scale.y, options.scale.z});
-  const std::string distance = rounded_text(1e-3 * largest * median_edge(mesh), 1);
+  const std::string distance = rounded_text(largest * seam_gap(mesh), 1);
   const std::size_t near = near_border_vertices(mesh, std::stod(distance) / largest);
   if (near > 0)
     notes.push_back(options.object + ": " + count_of(near, count) + " lie within " + distance +
@@ -138,9 +162,9 @@ std::string unit_note(const std::string& object, const std::vector<Vec3d>& posit
     const bool even = scale.x == scale.y && scale.y == scale.z;
     factor = rounded_text(even ? scale.x * unit.metres : unit.metres, 6);
     if (!even) factor += " times the present one";
-    result = rounded_text(largest * unit.metres);
+    result = metres_text(largest * unit.metres);
   }
-  const std::string line = object + " is " + rounded_text(largest) + " m large";
+  const std::string line = object + " is " + metres_text(largest) + " m large";
   if (units.empty())
     return line + ": is it in metres? \"transform\": {\"scale\": …} changes its size";
   return line + ": its file is probably in " + units + "; \"transform\": {\"scale\": " + factor +

@@ -150,19 +150,22 @@ Vec3d place_cloth(JsonObject& object, LoadedCloth& loaded) {
   return scale;
 }
 
-void pin_box(const JsonValue& value, const Cloth& cloth, std::vector<bool>& pinned) {
+void pin_box(const JsonValue& value, const LoadedCloth& loaded, std::vector<bool>& pinned) {
   const std::vector<JsonValue> corners = value.items();
   if (corners.size() != 2) value.refuse("two corners: [[x, y, z], [x, y, z]]");
   const Vec3d low = corners[0].vector(), high = corners[1].vector();
 
-  // A box that holds no vertex is most likely misplaced.
-  bool found = false;
-  for (std::size_t v = 0; v < cloth.mesh.positions.size(); ++v) {
-    const Vec3d p = cloth.mesh.positions[v];
-    const bool inside = p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y &&
-                        p.z >= low.z && p.z <= high.z;
-    if (inside) found = pinned[v] = true;
-  }
+  const auto inside = [&](Vec3d p) {
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z &&
+           p.z <= high.z;
+  };
+
+  // A box that holds no vertex is most likely misplaced. One of vertices without a face is not:
+  // they stay where they are.
+  const std::vector<Vec3d>& positions = loaded.cloth.mesh.positions;
+  bool found = std::ranges::any_of(loaded.layout.positions, inside);
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (inside(positions[v])) found = pinned[v] = true;
   if (!found) value.refuse("a box with at least one vertex of the cloth in it");
 }
 
@@ -173,7 +176,7 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
   for (const JsonValue& item : value.items()) {
     if (item.json().is_object()) {
       JsonObject object(item);
-      pin_box(object.required("box"), loaded.cloth, pinned);
+      pin_box(object.required("box"), loaded, pinned);
       object.finish();
       continue;
     }

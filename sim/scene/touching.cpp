@@ -1,11 +1,13 @@
 #include "sim/scene/touching.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <set>
 #include <utility>
 
 #include "kernels/parallel/parallel_for.h"
+#include "sim/scene/box_tree.h"
 #include "sim/scene/exact_triangles.h"
 
 namespace icloth {
@@ -14,6 +16,40 @@ namespace {
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 bool has(const Triangle& face, Index v) { return v == face[0] || v == face[1] || v == face[2]; }
+
+/// Faces around a vertex up to which all pairs of them are tested.
+constexpr std::size_t kFewFaces = 32;
+
+/// The faces around one vertex, in a tree of their opposite edges. Two faces that touch beside the
+/// vertex do so with two elements of which one at most ends there, so the opposite edge of one of
+/// the faces touches the other face.
+class Crowd {
+ public:
+  Crowd(std::span<const Vec3d> positions, std::span<const Triangle> faces,
+        std::span<const Index> around, Index centre)
+      : around_(around), opposite_(boxes_of(positions, faces, around, centre)), tree_(opposite_) {}
+
+  /// Calls visit_face(f) for every face whose opposite edge may touch something in the box.
+  template <class Visit>
+  void visit(const Box& box, const Visit& visit_face) const {
+    tree_.visit(box, [&](Index i) { visit_face(around_[at(i)]); });
+  }
+
+ private:
+  static std::vector<Box> boxes_of(std::span<const Vec3d> positions,
+                                   std::span<const Triangle> faces, std::span<const Index> around,
+                                   Index centre) {
+    std::vector<Box> boxes(around.size(), Box::empty());
+    for (std::size_t i = 0; i < around.size(); ++i)
+      for (const Index v : faces[at(around[i])])
+        if (v != centre) boxes[i].add(positions[at(v)]);
+    return boxes;
+  }
+
+  std::span<const Index> around_;
+  std::vector<Box> opposite_;
+  BoxTree tree_;  ///< refers to the boxes
+};
 
 /// Tests the elements of two faces that share a vertex.
 class NeighbourTest {
@@ -82,21 +118,40 @@ std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const Index v : faces[f]) around[at(next[at(v)]++)] = static_cast<Index>(f);
 
+  // A polygon that was cut as a fan has thousands of faces at one vertex, and millions of pairs.
+  std::map<Index, Crowd> crowds;
+  for (Index v = 0; v < static_cast<Index>(positions.size()); ++v) {
+    const auto own = std::span<const Index>(around).subspan(
+        at(first[at(v)]), at(first[at(v) + 1]) - at(first[at(v)]));
+    const bool is_cloth = group.empty() || own.empty() || group[at(own[0])] >= 0;
+    if (own.size() > kFewFaces && is_cloth) crowds.try_emplace(v, positions, faces, own, v);
+  }
+
   // Every pair of neighbours is tested once: from its first face, at the first vertex that both
-  // have.
+  // have. In a crowd a pair may come up twice.
   const NeighbourTest test(positions, faces);
   std::vector<Touch> found;
   std::mutex lock;  // the order of arrival is undone by the sort below
   const auto test_face = [&](Index a) {
     std::vector<Touch> own;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (Index i = first[at(faces[at(a)][k])]; i < first[at(faces[at(a)][k]) + 1]; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index v = faces[at(a)][k];
+      if (const auto crowd = crowds.find(v); crowd != crowds.end()) {
+        Box box = Box::empty();
+        for (const Index corner : faces[at(a)]) box.add(positions[at(corner)]);
+        crowd->second.visit(box, [&](Index b) {
+          if (b != a) test.run(std::min(a, b), std::max(a, b), own);
+        });
+        continue;
+      }
+      for (Index i = first[at(v)]; i < first[at(v) + 1]; ++i) {
         const Index b = around[at(i)];
         bool seen = b <= a;
         for (std::size_t before = 0; before < k; ++before)
           seen = seen || has(faces[at(b)], faces[at(a)][before]);
         if (!seen) test.run(a, b, own);
       }
+    }
     if (own.empty()) return;
     const std::lock_guard guard(lock);
     found.insert(found.end(), own.begin(), own.end());

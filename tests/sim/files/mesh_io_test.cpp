@@ -73,6 +73,11 @@ TEST(MeshIo, ObjLinesGoOnAfterABackslash) {
   }
 }
 
+TEST(MeshIo, AByteOrderMarkHidesNoVertex) {
+  const MeshFile file = parse_obj("\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(file.mesh.positions.size(), 3u);
+}
+
 TEST(MeshIo, LinesAreCountedAsEditorsDo) {
   const std::string text = "v 0 \\\n0 \\\n0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 \\\n9\nf 1 2 8\n";
   try {

@@ -254,6 +254,60 @@ TEST(ClothMesh, AsManyFacesOnAnEdgeAsAreAllowedRunAndOneMoreIsNamed) {
   EXPECT_THROW(make_world(own), InputError);
 }
 
+TEST(ClothMesh, AsManyFacesAtAVertexAsAreAllowedRunAndOneMoreIsNamed) {
+  const TemporaryFolder folder;
+  const auto fan = [](std::size_t faces) {
+    std::string text = "v 5 5 5\nv 0 0 0\n";
+    for (std::size_t i = 0; i < faces; ++i) {
+      const double angle = 6.283185 * static_cast<double>(i) / static_cast<double>(faces);
+      text +=
+          "v " + std::to_string(std::cos(angle)) + " 0 " + std::to_string(std::sin(angle)) + "\n";
+    }
+    for (std::size_t i = 0; i < faces; ++i)
+      text += "f 2 " + std::to_string(3 + (i + 1) % faces) + " " + std::to_string(3 + i) + "\n";
+    return text;
+  };
+  const Loaded scene(folder.write("most.obj", fan(kMostFacesAtVertex)));
+  EXPECT_EQ(scene.mesh().faces.size(), kMostFacesAtVertex);
+  const std::string message = error_of(folder.write("many.obj", fan(kMostFacesAtVertex + 1)));
+  EXPECT_TRUE(contains(message, "vertex 1: 4097 faces, expected at most 4096")) << message;
+}
+
+TEST(ClothMesh, RepeatedFacesAreTold) {
+  const TemporaryFolder folder;
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n";
+  const Loaded once(folder.write("once.obj", corners + "f 1 2 3 4\n"));
+  EXPECT_TRUE(once.origin.notes.empty());
+  const Loaded twice(folder.write("c.obj", corners + "f 1 2 3 4\nf 3 2 1\n"));
+  ASSERT_EQ(twice.origin.notes.size(), 1u);
+  EXPECT_TRUE(contains(twice.origin.notes[0], "1 of 3 faces have the same vertices"));
+  run(twice, 2, Build::cpu32);
+}
+
+TEST(ClothMesh, FineBordersAreNoSeams) {
+  // A slice of a disc: the edges along its rim are far shorter than those to its tip.
+  const TemporaryFolder folder;
+  std::string text = "v 0 0 0\n";
+  for (int i = 0; i < 4000; ++i)
+    text += "v " + std::to_string(std::cos(i / 4000.0)) + " 0 " +
+            std::to_string(std::sin(i / 4000.0)) + "\n";
+  for (int i = 2; i < 4001; ++i)
+    text += "f 1 " + std::to_string(i + 1) + " " + std::to_string(i) + "\n";
+  const Loaded disc(folder.write("disc.obj", text));
+  EXPECT_TRUE(disc.origin.notes.empty()) << disc.origin.notes[0];
+}
+
+TEST(ClothMesh, ABoxOfPinsMayHoldVerticesWithoutAFaceAlone) {
+  const TemporaryFolder folder;
+  folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 7 7 7\nf 1 2 3\n");
+  const Loaded scene(
+      folder.write("s.json", scene_of("c.obj", R"(, "pins": [{"box": [[6, 6, 6], [8, 8, 8]]}])")));
+  EXPECT_TRUE(scene.scene->cloths[0].pins.empty());
+  const std::string nowhere =
+      folder.write("n.json", scene_of("c.obj", R"(, "pins": [{"box": [[4, 4, 4], [5, 5, 5]]}])"));
+  EXPECT_TRUE(contains(error_of(nowhere), "a box with at least one vertex"));
+}
+
 TEST(ClothMesh, OtherUnitsAreToldWithTheirRemedy) {
   const auto note = [](double size, Vec3d scale = {1, 1, 1}, bool is_cloth = true,
                        double depth = 0) {
