@@ -35,6 +35,11 @@ class Simulator {
   /// until they are outside again; penetrations are left to be counted.
   virtual void pass_over() = 0;
 
+  /// Pairs, at most 100, that the collision test of this build does not see apart although nothing
+  /// moves: a step from here will hardly be accepted. They are apart in the scene where the start
+  /// check accepts it, but closer than the numbers of the build resolve. Changes nothing.
+  virtual std::vector<OffendingPair> contacts_at_rest() { return {}; }
+
   virtual const Parameters& parameters() const = 0;
   virtual void set_parameters(const Parameters& parameters) = 0;
 

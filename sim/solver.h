@@ -24,6 +24,7 @@ class Solver final : public Simulator {
   // sim/step.cpp
   StepReport step(std::span<const InputEvent> events) override;
   void pass_over() override;
+  std::vector<OffendingPair> contacts_at_rest() override;
 
   // sim/solver.cpp
   icloth::Build build() const override;

@@ -258,4 +258,22 @@ void Solver::pass_over() {
   ++state_.step;
 }
 
+std::vector<OffendingPair> Solver::contacts_at_rest() {
+  use_device();
+  Memory before;
+  before.copy_from(state_);
+  state_.x0.copy_from(state_.x1);
+
+  // The test of a step, of motions that all are 0.
+  StepReport report;
+  SubstepContext step = substep(report, state_.time, parameters_.step.time_step);
+  broad_phase_.cover_candidate(step);
+  ccd_.find(step, broad_phase_, {}, false, let_go_view(state_, mesh_));
+  report_offending(report);
+
+  static_cast<Memory&>(state_).copy_from(before);
+  broad_phase_.follow_memory();
+  return report.offending;
+}
+
 }  // namespace icloth::ICLOTH_BUILD

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include "sim/files/text.h"
+
 namespace icloth {
 namespace {
 
@@ -177,6 +179,23 @@ std::vector<Index> faces_of_pairs(std::span<const Triangle> faces,
   return found;
 }
 
+std::vector<std::string> start_remedies(const Scene& scene, const StartConflicts& conflicts,
+                                        bool single_precision) {
+  std::vector<std::string> remedies;
+  const auto any_of_kind = [&](Touch::Kind kind) {
+    return std::ranges::any_of(conflicts.touches, [&](const Touch& t) { return t.kind == kind; });
+  };
+  if (any_of_kind(Touch::Kind::vertex_edge))
+    remedies.emplace_back("A vertex on an edge has to be a vertex of the faces on both sides.");
+  if (any_of_kind(Touch::Kind::vertex_vertex))
+    remedies.emplace_back("Vertices at one place are joined by \"weld\" in the scene file.");
+
+  const bool any = !conflicts.pairs.empty() || !conflicts.touches.empty();
+  if (any && single_precision && is_free_in_double(scene))
+    remedies.emplace_back(kTooCloseForSingle);
+  return remedies;
+}
+
 int report_start_intersections(const Scene& scene, bool single_precision,
                                std::span<const FileLayout> layouts) {
   constexpr std::size_t shown = 10;
@@ -195,32 +214,22 @@ int report_start_intersections(const Scene& scene, bool single_precision,
   const std::vector<IntersectingFaces>& pairs = conflicts.pairs;
   const std::vector<Touch>& touches = conflicts.touches;
   const ElementNames names(scene, layouts);
-  const auto list = [&](const char* what, const auto& places, const auto& name) {
+  const auto list = [&](const char* one, const char* many, const auto& places, const auto& name) {
     if (places.empty()) return;
-    std::fprintf(stderr, "icloth: scene '%s' starts with %zu %s:\n", scene.name.c_str(),
-                 places.size(), what);
+    std::fprintf(stderr, "icloth: scene %s starts with %zu %s:\n", in_quotes(scene.name).c_str(),
+                 places.size(), places.size() == 1 ? one : many);
     for (std::size_t i = 0; i < std::min(places.size(), shown); ++i)
       std::fprintf(stderr, "  %s\n", name(places[i]).c_str());
     if (places.size() > shown) std::fprintf(stderr, "  … and %zu more\n", places.size() - shown);
   };
-  list("pairs of faces that intersect", pairs,
+  list("pair of faces that intersect", "pairs of faces that intersect", pairs,
        [&](const IntersectingFaces& pair) { return names.pair(pair); });
-  list("places where neighbouring faces touch beside their common vertices", touches,
+  list("place where neighbouring faces touch beside their common vertices",
+       "places where neighbouring faces touch beside their common vertices", touches,
        [&](const Touch& touch) { return names.touch(touch); });
 
-  // Some of the causes have a remedy that can be named.
-  const auto of_kind = [&](Touch::Kind kind) {
-    return std::ranges::any_of(touches, [&](const Touch& t) { return t.kind == kind; });
-  };
-  if (of_kind(Touch::Kind::vertex_edge))
-    std::fprintf(stderr, "  A vertex on an edge has to be a vertex of the faces on both sides.\n");
-  if (of_kind(Touch::Kind::vertex_vertex))
-    std::fprintf(stderr, "  Vertices at one place are joined by \"weld\" in the scene file.\n");
-  const bool conflicts_in_single = single_precision && !(pairs.empty() && touches.empty());
-  if (conflicts_in_single && is_free_in_double(scene))
-    std::fprintf(stderr,
-                 "  They are apart in the scene, but closer than single precision resolves: move "
-                 "them apart, or use --precision f64.\n");
+  for (const std::string& remedy : start_remedies(scene, conflicts, single_precision))
+    std::fprintf(stderr, "  %s\n", remedy.c_str());
   if (!pairs.empty()) return 1;
   return touches.empty() ? 0 : 2;
 }

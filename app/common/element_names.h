@@ -50,6 +50,15 @@ std::string pins_in_the_way(const Scene& scene, const ElementNames& names,
 std::vector<Index> faces_of_pairs(std::span<const Triangle> faces,
                                   std::span<const OffendingPair> pairs);
 
+/// What a user can do about the conflicts of a start state, a sentence each, where that is known.
+std::vector<std::string> start_remedies(const Scene& scene, const StartConflicts& conflicts,
+                                        bool single_precision);
+
+/// Says that surfaces are too close for the builds in single precision, and what helps.
+inline constexpr const char* kTooCloseForSingle =
+    "They are apart in the scene, but closer than single precision resolves: move them apart, or "
+    "use --precision f64.";
+
 /// Prints what intersects or touches in the start state of a scene to stderr, the first ten by
 /// name. 0: nothing. Otherwise nothing may be simulated, and the number is an exit code: 1 where
 /// faces intersect, 2 where only neighbouring faces touch, which is the fault of a mesh.

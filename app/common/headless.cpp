@@ -8,6 +8,7 @@
 #include "app/common/machine.h"
 #include "app/common/progress.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_meshes.h"
 
@@ -16,8 +17,24 @@ namespace {
 
 constexpr std::size_t kShownPairs = 10;
 
+/// Lists the first pairs of a refused step to show the place; a tangle may have thousands.
+void print_offending(const ElementNames& names, const StepReport& report) {
+  for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
+    std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());
+  if (report.offending.size() > kShownPairs)
+    std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
+}
+
+/// Tells that the scene cannot start, since the first step does not see its layers apart.
+void print_close_start(const HeadlessJob& job, const StepReport& report) {
+  std::fprintf(stderr, "icloth: scene %s starts with %lld pairs of elements that are too close:\n",
+               in_quotes(job.scene->name).c_str(), static_cast<long long>(report.impacts_left));
+  print_offending(ElementNames(*job.scene, job.origin.layouts), report);
+  std::fprintf(stderr, "  %s\n", kTooCloseForSingle);
+}
+
 /// Tells why a step was refused, and the first of its offending pairs.
-void print_refusal(const HeadlessJob& job, const StepReport& report) {
+void print_refusal(const HeadlessJob& job, const StepReport& report, bool too_close) {
   const ElementNames names(*job.scene, job.origin.layouts);
 
   // The reason names what the user can change, as far as the report tells it.
@@ -32,22 +49,8 @@ void print_refusal(const HeadlessJob& job, const StepReport& report) {
                static_cast<long long>(report.step), report.time, reason.c_str(),
                static_cast<long long>(report.impacts_left));
 
-  // The first pairs show the place; a tangle may have thousands.
-  for (std::size_t i = 0; i < std::min(report.offending.size(), kShownPairs); ++i)
-    std::fprintf(stderr, "  %s\n", names.pair(report.offending[i]).c_str());
-  if (report.offending.size() > kShownPairs)
-    std::fprintf(stderr, "  … and %zu more\n", report.offending.size() - kShownPairs);
-}
-
-/// Lets the clock go on over a refused step, and says what that did to the state.
-void pass_over(Simulator& simulator) {
-  simulator.pass_over();
-  std::set<Index> let_go;
-  for (const LetGo& entry : simulator.snapshot().let_go) let_go.insert(entry.vertex);
-  std::fprintf(stderr,
-               "icloth: went on to %g s with the cloth at rest: %zu vertices are let go from "
-               "bodies, %zu pairs of faces intersect\n",
-               simulator.time(), let_go.size(), count_penetrations(simulator));
+  print_offending(names, report);
+  if (too_close) std::fprintf(stderr, "  %s\n", kTooCloseForSingle);
 }
 
 /// The input of one step, from the recording where there is one, else from the scene's script.
@@ -82,6 +85,23 @@ std::size_t count_penetrations(const Simulator& simulator) {
   return find_intersections(state.x1, soup.faces, soup.group).size();
 }
 
+std::string pass_over_step(Simulator& simulator) {
+  simulator.pass_over();
+  std::set<Index> let_go;
+  for (const LetGo& entry : simulator.snapshot().let_go) let_go.insert(entry.vertex);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "went on to %g s with the cloth at rest: %zu vertices are let go from bodies, "
+                "%zu pairs of faces intersect",
+                simulator.time(), let_go.size(), count_penetrations(simulator));
+  return text;
+}
+
+bool is_too_close(Simulator& simulator, const StepReport& report) {
+  return !report.accepted && report.finite && simulator.build() != Build::cpu64 &&
+         !simulator.contacts_at_rest().empty();
+}
+
 HeadlessResult run_headless(const HeadlessJob& job) {
   HeadlessResult result;
   if (!job.quiet) print_notes(job.origin);
@@ -105,12 +125,24 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     const StepReport report = simulator->step(input.events);
     if (job.pass_over && !report.accepted) input.passed_over = true;
 
+    // Layers that the numbers of the build do not tell apart are a fault of the start state.
+    const bool too_close = is_too_close(*simulator, report);
+    if (too_close && step == 0 && job.stop_on_failure) {
+      progress.finish();
+      print_close_start(job, report);
+      result.start_contacts = report.offending;
+      result.start_refused = true;
+      result.start_exit_code = 1;
+      return result;
+    }
+
     // A refused step is reported, and ends the run or is passed over.
     if (!report.accepted) {
       progress.finish();
-      print_refusal(job, report);
+      print_refusal(job, report, too_close);
       result.refused.push_back(report);
-      if (input.passed_over) pass_over(*simulator);
+      if (input.passed_over)
+        std::fprintf(stderr, "icloth: %s\n", pass_over_step(*simulator).c_str());
     }
     if (job.record) job.record->steps.push_back(input);
     result.statistics.add(report);

@@ -29,11 +29,12 @@ struct HeadlessJob {
 
 struct HeadlessResult {
   RunStatistics statistics;
-  std::vector<StepReport> refused;  ///< steps that were not accepted, with their pairs
-  std::size_t penetrations = 0;     ///< pairs of faces that intersect in the final state
-  std::uint64_t state_hash = 0;     ///< of the final state
-  bool start_refused = false;       ///< the start state intersects; nothing was simulated
-  int start_exit_code = 0;          ///< of a refused start: 1, or 2 where only the mesh is at fault
+  std::vector<StepReport> refused;            ///< steps that were not accepted, with their pairs
+  std::size_t penetrations = 0;               ///< pairs of faces that intersect in the final state
+  std::uint64_t state_hash = 0;               ///< of the final state
+  bool start_refused = false;                 ///< the start state intersects; nothing was simulated
+  std::vector<OffendingPair> start_contacts;  ///< of layers that are too close for the build
+  int start_exit_code = 0;  ///< of a refused start: 1, or 2 where only the mesh is at fault
 
   bool clean() const { return refused.empty() && penetrations == 0 && !start_refused; }
 };
@@ -41,6 +42,14 @@ struct HeadlessResult {
 /// Checks the start state, steps, and checks the final state exactly. Start intersections and
 /// refused steps are printed to stderr.
 HeadlessResult run_headless(const HeadlessJob& job);
+
+/// Makes the simulator pass over the step that it just refused, and says what that did to the
+/// state: "went on to 0.3 s with the cloth at rest: …".
+std::string pass_over_step(Simulator& simulator);
+
+/// Whether a step was refused because surfaces are closer than the numbers of the build resolve:
+/// the collision test does not see them apart even at rest. Never in double precision.
+bool is_too_close(Simulator& simulator, const StepReport& report);
 
 /// Prints what the loader has to say about the input of a scene to stderr, a line each.
 void print_notes(const SceneOrigin& origin);

@@ -145,15 +145,18 @@ StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {
   return conflicts;
 }
 
-std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision) {
-  StartConflicts conflicts = find_start_conflicts(scene, single_precision);
-  std::vector<IntersectingFaces>& pairs = conflicts.pairs;
+std::vector<IntersectingFaces> face_pairs(const StartConflicts& conflicts) {
+  std::vector<IntersectingFaces> pairs = conflicts.pairs;
   for (const Touch& touch : conflicts.touches) pairs.push_back({touch.a, touch.b});
   const auto key = [](const IntersectingFaces& p) { return std::pair(p.a, p.b); };
   const auto same = [&](const auto& p, const auto& q) { return key(p) == key(q); };
   std::ranges::sort(pairs, {}, key);
   pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
   return pairs;
+}
+
+std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision) {
+  return face_pairs(find_start_conflicts(scene, single_precision));
 }
 
 }  // namespace icloth

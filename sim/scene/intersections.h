@@ -31,6 +31,8 @@ struct StartConflicts {
 StartConflicts find_start_conflicts(const Scene& scene, bool single_precision);
 
 /// All pairs of faces of the conflicts, neighbours included, sorted.
+std::vector<IntersectingFaces> face_pairs(const StartConflicts& conflicts);
+/// The same for the conflicts that are found in a scene.
 std::vector<IntersectingFaces> find_start_intersections(const Scene& scene, bool single_precision);
 
 }  // namespace icloth

@@ -123,14 +123,17 @@ struct Shown {
   std::vector<Index> marked_faces;
 };
 
-/// Marks the faces that intersect in a start state that cannot be simulated.
+/// Marks the faces that intersect, or are too close, in a start state that cannot be simulated.
 void mark_start_intersections(const Scene& scene, bool single_precision, const World& world,
-                              Shown& shown) {
+                              const HeadlessResult& result, Shown& shown) {
+  shown.positions.clear();
   for (const Vec3d p : world.position) shown.positions.push_back(convert<float>(p));
   for (const IntersectingFaces& pair : find_start_intersections(scene, single_precision)) {
     shown.marked_faces.push_back(pair.a);
     shown.marked_faces.push_back(pair.b);
   }
+  const std::vector<Index> close = faces_of_pairs(world.face, result.start_contacts);
+  shown.marked_faces.insert(shown.marked_faces.end(), close.begin(), close.end());
 }
 
 }  // namespace
@@ -177,7 +180,7 @@ int run_render(const RenderOptions& options) {
   const HeadlessResult result = run_headless(job);
   stats.finish(result.statistics);
   if (result.start_refused)
-    mark_start_intersections(*job.scene, build != Build::cpu64, world, shown);
+    mark_start_intersections(*job.scene, build != Build::cpu64, world, result, shown);
 
   // The picture shows that state.
   Frame frame;

@@ -368,6 +368,36 @@ TEST_F(Cli, BadStartIsRefusedWithItsPairs) {
   EXPECT_FALSE(fs::exists(folder_ / "frames"));
 }
 
+TEST_F(Cli, LayersTooCloseForSinglePrecisionAreRefusedAtTheStart) {
+  // Two sheets 0.1 µm above each other, corner over corner: apart for the exact check, too close
+  // for the collision test in single precision.
+  const std::string sheet =
+      R"("mesh": {"grid": {"size": [0.3, 0.3], "orientation": "horizontal"}}, "triangles": 72)";
+  write("close.json", R"({"name": "close", "time_step": 0.01, "duration": 0.02, "cloths": [)"
+                      R"({"name": "a", )" +
+                          sheet + R"(}, {"name": "b", )" + sheet +
+                          R"(, "transform": {"translate": [0, 1e-7, 0]}}]})");
+  const Outcome single = icloth("run close.json --device cpu --quiet");
+  EXPECT_EQ(single.code, 1) << single.err;
+  EXPECT_TRUE(contains(single.err, "scene 'close' starts with ")) << single.err;
+  EXPECT_TRUE(contains(single.err, "--precision f64")) << single.err;
+  EXPECT_FALSE(contains(single.err, "step 0")) << single.err;
+  const Outcome twice = icloth("run close.json --device cpu --quiet --precision f64");
+  EXPECT_EQ(twice.code, 0) << twice.err;
+
+  // Where rounding makes them touch, the start check itself says so.
+  write("touch.json", R"({"name": "touch", "time_step": 0.01, "duration": 0.02, "cloths": [)"
+                      R"({"name": "a", )" +
+                          sheet +
+                          R"(, "transform": {"translate": [0, 1, 0]}}, )"
+                          R"({"name": "b", )" +
+                          sheet + R"(, "transform": {"translate": [0.01, 1.00000001, 0.02]}}]})");
+  const Outcome touching = icloth("run touch.json --device cpu --quiet");
+  EXPECT_EQ(touching.code, 1) << touching.err;
+  EXPECT_TRUE(contains(touching.err, "pairs of faces that intersect")) << touching.err;
+  EXPECT_TRUE(contains(touching.err, "--precision f64")) << touching.err;
+}
+
 TEST_F(Cli, PenetrationsLeftAreAFailure) {
   write("drop.json", kDrop);
   const Outcome run = icloth(

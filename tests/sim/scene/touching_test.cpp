@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <set>
 
 #include "kernels/distance.h"
 #include "sim/scene/intersections.h"
@@ -12,6 +14,8 @@
 
 namespace icloth {
 namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::vector<Touch> touches_of(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
   return find_touching_neighbours(x, faces, {});
@@ -53,6 +57,57 @@ TEST(Touching, FlatAndTiltedSheetsHaveNone) {
   EXPECT_TRUE(touches_of(sheet.mesh.positions, sheet.mesh.faces).empty());
 }
 
+TEST(Touching, ManyFacesAtAVertexGiveTheSameAsAllPairs) {
+  // Fans of 50 faces on a lattice, where elements meet in every way.
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> place(-6, 6), height(-1, 1);
+  std::size_t all = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<Vec3d> x{{0, 0, 0}};
+    std::vector<Triangle> faces;
+    while (faces.size() < 50) {
+      const auto corner = [&] {
+        x.push_back({0.1 * place(random), trial % 2 * 0.1 * height(random), 0.1 * place(random)});
+        return static_cast<Index>(x.size()) - 1;
+      };
+      const Triangle t{0, random() % 2 ? corner() : static_cast<Index>(x.size()) - 1, corner()};
+      if (t[1] == 0 || norm(cross(x[at(t[1])], x[at(t[2])])) < 1e-6) continue;
+      faces.push_back(t);
+    }
+
+    // Two faces alone are tested without a tree.
+    std::set<std::pair<Touch::Kind, std::array<Index, 4>>> expected;
+    const auto key = [](const Touch& t) {
+      auto result = std::pair(t.kind, t.v);
+      std::ranges::sort(result.second);
+      return result;
+    };
+    for (std::size_t b = 0; b < faces.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        for (const Touch& t : touches_of(x, {faces[a], faces[b]})) expected.insert(key(t));
+    const std::vector<Touch> found = touches_of(x, faces);
+    std::set<std::pair<Touch::Kind, std::array<Index, 4>>> keys;
+    for (const Touch& t : found) keys.insert(key(t));
+    EXPECT_EQ(keys, expected) << "trial " << trial;
+    EXPECT_EQ(keys.size(), found.size()) << "each once";
+    all += keys.size();
+  }
+  EXPECT_GT(all, 1000u);
+}
+
+TEST(Touching, AHundredThousandFacesAtAVertexAreNoObstacle) {
+  // All pairs would be five billion.
+  constexpr Index kFaces = 100'000;
+  std::vector<Vec3d> x{{0, 0, 0}};
+  std::vector<Triangle> faces;
+  for (Index i = 0; i < kFaces; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kFaces;
+    x.push_back({std::cos(angle), 0.3 * std::sin(angle), std::sin(angle)});
+    faces.push_back({0, 1 + (i + 1) % kFaces, 1 + i});
+  }
+  EXPECT_TRUE(touches_of(x, faces).empty());
+}
+
 /// Faces with corners on a coarse lattice; many share vertices, touch or overlap.
 Cloth lattice_cloth(std::mt19937& random) {
   std::uniform_int_distribution<int> coordinate(0, 2), height(0, 1), corner(0, 5);
@@ -91,6 +146,28 @@ bool any_contact(const Cloth& cloth) {
         }
       }
   return false;
+}
+
+TEST(Touching, LayersThatFloatsDoNotTellApartAreInContactAtRest) {
+  const auto scene_of = [](double gap) {
+    auto scene = std::make_shared<Scene>();
+    scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 72), {0, 0, 0}));
+    scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 72), {0, gap, 0}));
+    scene->cloths[1].name = "upper";
+    return scene;
+  };
+  const auto close = make_simulator(Build::cpu32, scene_of(1e-7));
+  EXPECT_FALSE(close->contacts_at_rest().empty());
+  for (const Build build : {Build::cpu32, Build::cpu64})
+    EXPECT_TRUE(make_simulator(build, scene_of(1e-4))->contacts_at_rest().empty());
+
+  // Asking leaves no trace: the steps are those of a simulator that was not asked.
+  const auto asked = make_simulator(Build::cpu32, scene_of(0.001));
+  const auto other = make_simulator(Build::cpu32, scene_of(0.001));
+  for (int k = 0; k < 12; ++k) {
+    EXPECT_TRUE(asked->contacts_at_rest().empty()) << k;
+    ASSERT_EQ(asked->step({}).state_hash, other->step({}).state_hash) << k;
+  }
 }
 
 TEST(Touching, WhatTheStartCheckAcceptsSurvivesTheFirstStep) {
