@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "app/common/element_names.h"
+#include "app/common/headless.h"
 
 namespace icloth {
 
@@ -26,15 +26,21 @@ struct Failure {
   std::string what, remedy;
 };
 
-Failure failure_of(const StepReport& report, const Scene* scene) {
+Failure failure_of(const StepReport& report, const Scene& scene, const ElementNames& names,
+                   bool too_close) {
   const std::string collisions = std::to_string(report.impacts_left) +
                                  (report.impacts_left == 1 ? " collision" : " collisions");
   if (!report.finite)
     return {"gave numbers that are not finite, so it was thrown away",
             "A smaller time step usually helps."};
 
+  if (too_close)
+    return {"was refused: layers are closer than single precision resolves (" + collisions + ")",
+            "The layers have to be further apart, or the program has to be started with "
+            "--precision f64."};
+
   // Bodies may leave the cloth no room, above all where it is pinned.
-  const std::string pins = scene ? pins_in_the_way(*scene, ElementNames(*scene), report) : "";
+  const std::string pins = pins_in_the_way(scene, names, report);
   if (!pins.empty())
     return {"was refused: " + pins + " (" + collisions + ")",
             "The body has to stay away from what is pinned, or the pins have to go."};
@@ -48,8 +54,9 @@ Failure failure_of(const StepReport& report, const Scene* scene) {
 
 }  // namespace
 
-std::string failure_sentence(const StepReport& report, const Scene* scene) {
-  const Failure failure = failure_of(report, scene);
+std::string failure_sentence(const StepReport& report, const Scene& scene,
+                             const ElementNames& names, bool too_close) {
+  const Failure failure = failure_of(report, scene, names, too_close);
   char time[32];
   std::snprintf(time, sizeof time, "%.3f", report.time);
   return "The step at " + std::string(time) + " s " + failure.what +
@@ -91,6 +98,7 @@ void Session::play() { send(Command::play); }
 void Session::pause() { send(Command::pause); }
 void Session::step_once() { send(Command::step); }
 void Session::step_back(std::size_t count) { send(Back{count}); }
+void Session::pass_over() { send(Command::pass_over); }
 void Session::reset() { send(Command::reset); }
 void Session::set_scripted(bool on) { send(Toggle{true, on}); }
 void Session::set_real_time(bool on) { send(Toggle{false, on}); }
@@ -188,6 +196,9 @@ void Session::handle(Command command) {
     case Command::step:
       playing_ = false;
       single_ = !refused();
+      break;
+    case Command::pass_over:
+      pass_refused_step();
       break;
     case Command::reset:
       go_to(start_);
@@ -332,9 +343,28 @@ void Session::finish(const StepReport& report) {
   failed_ = !report.accepted;
   if (failed_) {
     playing_ = false;
-    fail(failure_sentence(report, &simulator_->scene()));
+    const Scene& scene = simulator_->scene();
+    guarded([&] {
+      fail(failure_sentence(report, scene, ElementNames(scene, options_.layouts),
+                            is_too_close(*simulator_, report)));
+    });
   }
   publish(!playing_);
+}
+
+/// A replay makes the step as well, meets the same refusal, and passes over it.
+void Session::pass_refused_step() {
+  if (!may_pass_over()) return note("There is no refused step to pass over.");
+  const std::string text = pass_over_step(*simulator_);
+  recording_.steps.back().passed_over = true;
+  failed_ = false;
+  failure_.clear();
+
+  // The report is about the new state, which was not stepped to.
+  report_ = {};
+  report_.step = simulator_->step_index();
+  report_.time = simulator_->time();
+  note("The clock " + text + ".");
 }
 
 /// The recording is cut where the entry was taken, and the simulator becomes what it was there:
@@ -421,6 +451,7 @@ void Session::publish(bool always) {
   state.history = history_.size();
   state.history_bytes = history_.bytes();
   state.failed = failed_;
+  state.may_pass_over = may_pass_over();
   state.failure = failure_;
   state.notes = notes_;
   state.note = note_;

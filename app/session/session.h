@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/common/element_names.h"
 #include "app/session/history.h"
 #include "app/session/triple_buffer.h"
 #include "sim/scene/input.h"
@@ -26,6 +27,7 @@ struct SessionOptions {
   std::vector<std::string> overrides;     ///< --set arguments of the scene
   std::size_t history_bytes = 64u << 20;  ///< memory for stepping back
   bool real_time = true;                  ///< never faster than time_step per wall second
+  std::vector<FileLayout> layouts;        ///< of the scene's files, for the names of vertices
   std::string refusal;                    ///< why nothing may run (bad start state); empty: may
 };
 
@@ -49,10 +51,11 @@ struct PublishedState {
   double steps_per_second = 0;
   std::size_t history = 0;  ///< steps that can be taken back
   std::size_t history_bytes = 0;
-  bool failed = false;      ///< the newest step was refused, or nothing may run
-  std::string failure;      ///< plain sentence
-  std::uint64_t notes = 0;  ///< grows with every new note
-  std::string note;         ///< e.g. "session saved to …"
+  bool failed = false;         ///< the newest step was refused, or nothing may run
+  bool may_pass_over = false;  ///< the newest step was refused, and the clock can go on over it
+  std::string failure;         ///< plain sentence
+  std::uint64_t notes = 0;     ///< grows with every new note
+  std::string note;            ///< e.g. "session saved to …"
 };
 
 /// Owns the simulator. Every public member is called from one thread (the interface) and returns
@@ -68,6 +71,9 @@ class Session {
   void pause();
   void step_once();  ///< one step, then pause
   void step_back(std::size_t count = 1);
+  /// Lets the clock go on over the step that was just refused (Simulator::pass_over), as
+  /// `--on-failure continue` does; says in a note what that did.
+  void pass_over();
   void reset();                ///< to the start state; parameters stay
   void set_scripted(bool on);  ///< apply the scene's scripted grabs as well
   void set_real_time(bool on);
@@ -91,7 +97,7 @@ class Session {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Command { play, pause, step, reset, stop };
+  enum class Command { play, pause, step, pass_over, reset, stop };
   struct Back {
     std::size_t count;
   };
@@ -120,12 +126,14 @@ class Session {
   void handle(const Change& change);
   void handle(const InputEvent& event);
   void advance();
+  void pass_refused_step();
   Recording::Step next_step();
   void start_script();
   void release_scripted_handles();
   void finish(const StepReport& report);
   void go_to(const HistoryEntry& entry);
   void fail(const std::string& sentence);
+  bool may_pass_over() const { return failed_ && !refused() && !recording_.steps.empty(); }
   void note(const std::string& text);
   void publish(bool always);
   void read_positions(PublishedState& state);
@@ -165,7 +173,9 @@ class Session {
   std::thread thread_;  ///< last: starts when all else is there
 };
 
-/// Why a step was refused, for people.
-std::string failure_sentence(const StepReport& report, const Scene* scene = nullptr);
+/// Why a step was refused, for people. `names` are those of the scene's elements; `too_close`: the
+/// numbers of the build do not tell layers apart.
+std::string failure_sentence(const StepReport& report, const Scene& scene,
+                             const ElementNames& names, bool too_close);
 
 }  // namespace icloth

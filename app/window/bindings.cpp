@@ -48,6 +48,7 @@ constexpr Binding kTable[] = {
     {T::key, key::kRight, kPlain, H::any, U::any, A::step, kTime, "Right or .", "one step", ""},
     {T::key, key::kPeriod, kPlain, H::any, U::any, A::step, kTime, "", "", ""},
     {T::key, key::kLeft, kPlain, H::any, U::any, A::step_back, kTime, "Left", "one step back in the history", ""},
+    {T::key, 'O', kPlain, H::any, U::any, A::pass_over, kTime, "O", "go on over a refused step: the clock moves, the cloth rests where it is", ""},
     {T::key, 'R', kPlain, H::any, U::any, A::reset, kTime, "R", "reset to the start state; parameters stay", ""},
     {T::key, 'Z', kCtrl, H::any, U::any, A::undo, kTime, "Ctrl+Z, Ctrl+Shift+Z", "undo and redo changes of parameters", ""},
     {T::key, 'Z', kCtrl | kShift, H::any, U::any, A::redo, kTime, "", "", ""},

@@ -17,12 +17,13 @@ void TestStatusFile::write(const TestStatus& s) const {
 
   // The line is JSON, written by hand as its values need no escaping.
   const auto word = [](bool b) { return b ? "true" : "false"; };
-  std::fprintf(file,
-               "{\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "
-               "\"fps\": %.3f, \"steps_per_second\": %.3f, \"handles\": %d, \"parked\": %d, "
-               "\"playing\": %s, \"failed\": %s, \"panels\": %s, ",
-               s.step, s.time, s.penetrations, s.max_speed, s.ui_fps, s.steps_per_second, s.handles,
-               s.parked, word(s.playing), word(s.failed), word(s.panels));
+  std::fprintf(
+      file,
+      "{\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "
+      "\"fps\": %.3f, \"steps_per_second\": %.3f, \"handles\": %d, \"parked\": %d, \"notes\": %d, "
+      "\"playing\": %s, \"failed\": %s, \"panels\": %s, ",
+      s.step, s.time, s.penetrations, s.max_speed, s.ui_fps, s.steps_per_second, s.handles,
+      s.parked, s.notes, word(s.playing), word(s.failed), word(s.panels));
   std::fprintf(file,
                "\"view\": [%.0f, %.0f, %.0f, %.0f], \"mean\": [%.9g, %.9g, %.9g], "
                "\"cloth_visible\": %s, \"cloth_pixel\": [%.0f, %.0f]}\n",

@@ -16,6 +16,7 @@ struct TestStatus {
   double max_speed = 0;  ///< [m/s]
   double ui_fps = 0, steps_per_second = 0;
   int handles = 0, parked = 0;
+  int notes = 0;  ///< about the input of the scene
   bool playing = false, failed = false, panels = true;
   std::array<float, 4> view{};  ///< left, top, width, height of the 3D picture [logical pixels]
   Vec3d mean;                   ///< of the cloth's vertices [m]

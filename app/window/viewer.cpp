@@ -28,32 +28,41 @@ int solver_threads(int asked, bool software) {
   return software ? std::max(1, all - 1) : all;
 }
 
-/// Explains why a start state that intersects is refused.
-std::string start_sentence(std::size_t pairs) {
+/// Explains why a start state that intersects is refused, and what helps where that is known.
+std::string start_sentence(std::size_t pairs, const std::vector<std::string>& remedies) {
   if (pairs == 0) return {};
-  return "In the start state " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
-         " of faces cross each other (red). A solver that keeps layers apart cannot start from "
-         "there: move the objects apart in the scene file, or repair the mesh.";
+  std::string text = "In the start state " + std::to_string(pairs) +
+                     (pairs == 1 ? " pair" : " pairs") +
+                     " of faces cross or touch each other (red). A solver that keeps layers apart "
+                     "cannot start from there: move the objects apart in the scene file, or repair "
+                     "the mesh.";
+  for (const std::string& remedy : remedies) text += " " + remedy;
+  return text;
 }
 
 std::unique_ptr<Session> make_session(const SimulationOptions& options, Build build,
                                       const std::shared_ptr<const Scene>& scene,
-                                      const std::string& refusal) {
+                                      const SceneOrigin& origin, const std::string& refusal) {
   SessionOptions session;
   session.scene = scene->source.empty() ? options.scene : scene->source;
   session.overrides = scene_overrides(options);
+  session.layouts = origin.layouts;
   session.refusal = refusal;
   return std::make_unique<Session>(make_simulator(build, scene), session);
 }
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene)
+Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene,
+               SceneOrigin origin)
     : options_(options),
       build_(build),
       scene_(std::move(scene)),
       world_(make_world(*scene_)),
-      start_intersections_(find_start_intersections(*scene_, build != Build::cpu64)),
+      origin_(std::move(origin)),
+      start_conflicts_(find_start_conflicts(*scene_, build != Build::cpu64)),
+      start_remedies_(start_remedies(*scene_, start_conflicts_, build != Build::cpu64)),
+      start_intersections_(face_pairs(start_conflicts_)),
       window_("icloth - " + scene_->name, options.width, options.height),
       ui_(window_),
       renderer_(world_, {.on_device = options.vertices != "host"}),
@@ -63,8 +72,8 @@ Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Sc
   // The parts follow the machine, then the scene and the options.
   set_thread_count(threads_);
   renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
-  session_ = make_session(options_.simulation, build_, scene_,
-                          start_sentence(start_intersections_.size()));
+  session_ = make_session(options_.simulation, build_, scene_, origin_,
+                          start_sentence(start_intersections_.size(), start_remedies_));
   if (!scene_->cameras.empty()) camera_ = Camera(scene_->cameras.front());
   if (options_.play_script) session_->set_scripted(true);
   if (options_.play) session_->play();
@@ -164,6 +173,8 @@ void Viewer::draw_panels() {
                        .drag = drag_,
                        .scene = *scene_,
                        .world = world_,
+                       .origin = origin_,
+                       .start_conflicts = start_conflicts_,
                        .start_intersections = start_intersections_,
                        .ui = state_,
                        .scale = scale};
@@ -395,6 +406,7 @@ TestStatus Viewer::test_status() const {
   for (const Handle& handle : drag_.handles()) status.parked += handle.parked;
   status.playing = state.playing;
   status.failed = state.failed;
+  status.notes = static_cast<int>(origin_.notes.size());
   status.panels = state_.panels;
 
   // Tests that drag the cloth need to know where it is on the screen.

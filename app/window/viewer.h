@@ -23,6 +23,7 @@
 #include "render/pick.h"
 #include "render/renderer.h"
 #include "sim/scene/intersections.h"
+#include "sim/scene/scene_io.h"
 #include "sim/scene/world.h"
 
 namespace icloth {
@@ -31,7 +32,9 @@ namespace icloth {
 class Viewer {
  public:
   /// Opens the window and makes the solver of a build. Throws DeviceError and InputError.
-  Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene);
+  /// `origin` is that of the scene: its notes are shown, and its numbers name vertices.
+  Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene,
+         SceneOrigin origin);
 
   /// Runs until the window is closed. Writes the recording when the options ask for it.
   void run();
@@ -90,7 +93,10 @@ class Viewer {
   Build build_;
   std::shared_ptr<const Scene> scene_;
   World world_;
-  std::vector<IntersectingFaces> start_intersections_;
+  SceneOrigin origin_;
+  StartConflicts start_conflicts_;
+  std::vector<std::string> start_remedies_;
+  std::vector<IntersectingFaces> start_intersections_;  ///< the faces of the conflicts
   Window window_;
   Ui ui_;
   Renderer renderer_;

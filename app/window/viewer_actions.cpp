@@ -196,6 +196,9 @@ bool Viewer::act_on_session(Action action) {
     case Action::step_back:
       session_->step_back();
       return true;
+    case Action::pass_over:
+      session_->pass_over();
+      return true;
     case Action::reset:
       session_->reset();
       return true;

@@ -1,5 +1,7 @@
 #include "app/cli/commands/view.h"
 
+#include <utility>
+
 #include "app/common/headless.h"
 #include "app/window/viewer.h"
 #include "sim/files/error.h"
@@ -14,12 +16,12 @@ int run_view(const ViewOptions& options) {
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + " is not available: " + reason);
 
-  // The notes go to the terminal that the window was opened from.
+  // The notes go to the terminal that the window was opened from, and into a panel.
   SceneOrigin origin;
   const std::shared_ptr<const Scene> scene =
       load_scene(simulation.scene, scene_overrides(simulation), {}, &origin);
   print_notes(origin);
-  Viewer viewer(options, build, scene);
+  Viewer viewer(options, build, scene, std::move(origin));
   viewer.run();
   return 0;
 }

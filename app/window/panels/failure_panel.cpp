@@ -10,25 +10,33 @@ namespace {
 
 constexpr std::size_t kMaxListed = 50;
 
-/// Lists the pairs behind the failure, those of the start or those of the step.
-void draw_pairs(const PanelContext& context) {
-  const auto& start = context.start_intersections;
-  const auto& offending = context.state.report.offending;
-  const std::size_t count = start.empty() ? offending.size() : start.size();
-  if (count == 0 || !ImGui::TreeNode("##pairs", "%zu pairs", count)) return;
-  const ElementNames names(context.scene);
-
-  // The list scrolls beyond six rows, and ends after fifty.
+/// Draws one list of names that scrolls beyond six rows and ends after fifty.
+template <class Places, class Name>
+void draw_list(const char* what, const Places& places, const Name& name) {
+  if (places.empty()) return;
+  if (!ImGui::TreeNode(what, "%zu %s", places.size(), what)) return;
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  ImGui::BeginChild("##list", {0, line * static_cast<float>(std::min<std::size_t>(count, 6))});
-  for (std::size_t k = 0; k < std::min(count, kMaxListed); ++k) {
-    const std::string text = start.empty() ? names.pair(offending[k]) : names.pair(start[k]);
-    ImGui::BulletText("%s", shown(text).c_str());
-  }
-
-  if (count > kMaxListed) ImGui::TextDisabled("and %zu more", count - kMaxListed);
+  ImGui::BeginChild("##list",
+                    {0, line * static_cast<float>(std::min<std::size_t>(places.size(), 6))});
+  for (std::size_t k = 0; k < std::min(places.size(), kMaxListed); ++k)
+    ImGui::BulletText("%s", shown(name(places[k])).c_str());
+  if (places.size() > kMaxListed) ImGui::TextDisabled("and %zu more", places.size() - kMaxListed);
   ImGui::EndChild();
   ImGui::TreePop();
+}
+
+/// Lists the pairs behind the failure, those of the start or those of the step, by the names that
+/// the terminal uses.
+void draw_pairs(const PanelContext& context) {
+  const ElementNames names(context.scene, context.origin.layouts);
+  const StartConflicts& start = context.start_conflicts;
+  draw_list("pairs of faces", start.pairs,
+            [&](const IntersectingFaces& pair) { return names.pair(pair); });
+  draw_list("places where neighbouring faces touch", start.touches,
+            [&](const Touch& touch) { return names.touch(touch); });
+  if (context.start_intersections.empty())
+    draw_list("pairs", context.state.report.offending,
+              [&](const OffendingPair& pair) { return names.pair(pair); });
 }
 
 /// Draws the remedies, of which an invalid start has none but looking at it.
@@ -46,6 +54,19 @@ void draw_buttons(PanelContext& context) {
   }
   ImGui::SameLine();
   if (ImGui::Button("One step back")) context.session.step_back();
+
+  // The clock goes on over the step, as with --on-failure continue, and so does the session.
+  if (context.state.may_pass_over) {
+    ImGui::SameLine();
+    if (ImGui::Button("Pass over")) {
+      context.session.pass_over();
+      context.session.play();
+    }
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip(
+          "The clock goes on over this step: bodies move, the cloth rests where it is.\n"
+          "Cloth that bodies go through is let go from them until it is outside again.");
+  }
   ImGui::SameLine();
   if (ImGui::Button("Save session")) context.ui.save_session = true;
 }

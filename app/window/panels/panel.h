@@ -13,6 +13,7 @@
 #include "app/window/parameter_edits.h"
 #include "render/renderer.h"
 #include "sim/scene/intersections.h"
+#include "sim/scene/scene_io.h"
 #include "sim/scene/world.h"
 
 namespace icloth {
@@ -47,7 +48,9 @@ struct PanelContext {
   const Drag& drag;
   const Scene& scene;
   const World& world;
-  const std::vector<IntersectingFaces>& start_intersections;
+  const SceneOrigin& origin;
+  const StartConflicts& start_conflicts;
+  const std::vector<IntersectingFaces>& start_intersections;  ///< the faces of the conflicts
   UiState& ui;
   float scale = 1;
 };
@@ -69,6 +72,8 @@ long long penetrations(const PanelContext& context);
 /// Draws the column on the left: transport, stage plot, then tabs of parameters and statistics.
 void draw_side_panel(PanelContext& context, const Rect& place);
 void draw_transport(PanelContext& context);
+/// Draws what the loader says about the input of the scene; nothing where it says nothing.
+void draw_notes(const PanelContext& context);
 void draw_stage_plot(PanelContext& context);
 void draw_parameters(PanelContext& context);
 void draw_statistics(PanelContext& context);

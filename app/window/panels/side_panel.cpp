@@ -1,4 +1,5 @@
 // The column on the left, with its transport buttons and tabs.
+#include <algorithm>
 #include <cstdio>
 
 #include "app/window/panels/panel.h"
@@ -82,6 +83,27 @@ void draw_transport(PanelContext& context) {
   tooltip("Apply the grabs that are written in the scene file.");
 }
 
+void draw_notes(const PanelContext& context) {
+  constexpr std::size_t kFew = 3;  // so many are open from the start
+  const std::vector<std::string>& notes = context.origin.notes;
+  if (notes.empty()) return;
+  const std::string title = "Notes (" + std::to_string(notes.size()) + ")###notes";
+  const ImGuiTreeNodeFlags open = notes.size() <= kFew ? ImGuiTreeNodeFlags_DefaultOpen : 0;
+  if (!ImGui::CollapsingHeader(title.c_str(), open)) return;
+
+  // Many notes scroll, so that they leave room for the rest of the column.
+  std::string text;
+  for (const std::string& note : notes) text += (text.empty() ? "" : "\n") + shown(note);
+  const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+  const float most = 10 * ImGui::GetTextLineHeight();
+  const float high = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).y;
+  ImGui::BeginChild("##notes", {0, std::min(high, most) + ImGui::GetStyle().ItemSpacing.y});
+  ImGui::PushTextWrapPos(width);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndChild();
+}
+
 void draw_side_panel(PanelContext& context, const Rect& place) {
   // The column has no decoration of its own.
   ImGui::SetNextWindowPos({place.x, place.y});
@@ -101,6 +123,7 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
 
   // The parts follow from top to bottom, and the tabs take the rest.
   draw_transport(context);
+  draw_notes(context);
   ImGui::Spacing();
   draw_stage_plot(context);
   ImGui::Spacing();

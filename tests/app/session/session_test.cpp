@@ -57,7 +57,8 @@ std::uint64_t replay(const Recording& recording, Simulator& simulator) {
       set_parameter(parameters, *find_parameter(name), value);
     }
     if (!s.parameters.empty()) simulator.set_parameters(parameters);
-    simulator.step(s.events);
+    const bool accepted = simulator.step(s.events).accepted;
+    if (!accepted && s.passed_over) simulator.pass_over();
   }
   return simulator.state_hash();
 }
@@ -235,6 +236,81 @@ TEST(Session, PausesOnARefusedStepAndGoesOnWithASmallerOne) {
   session->stop();
   EXPECT_EQ(replay(session->recording(), {.refuse = 2, .refuse_above = 0.006}),
             session->recording().final_hash);
+}
+
+TEST(Session, PassesOverARefusedStepAndReplaysThat) {
+  const FakeOptions options{.refuse = 2, .refuse_above = 0.006};
+  const auto session = make(options);
+  session->set_real_time(false);
+
+  // Without a refused step there is nothing to pass over.
+  session->pass_over();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
+  EXPECT_EQ(session->state().step, 0);
+
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  EXPECT_TRUE(session->state().may_pass_over);
+  const double before = session->state().time;
+  session->pass_over();
+  ASSERT_TRUE(wait_for_step(*session, 3));
+  EXPECT_FALSE(session->state().failed || session->state().may_pass_over);
+  EXPECT_FALSE(session->state().playing);
+  EXPECT_DOUBLE_EQ(session->state().time, before + 0.01);
+  EXPECT_NE(session->state().note.find("went on to"), std::string::npos) << session->state().note;
+
+  // It goes on from there, and a replay of the recording does the same.
+  session->set("step.time_step", 0.005);
+  step(*session, 2);
+  session->stop();
+  const Recording recording = session->recording();
+  ASSERT_EQ(recording.steps.size(), 5u);
+  EXPECT_TRUE(recording.steps[2].passed_over);
+  EXPECT_EQ(replay(recording, options), recording.final_hash);
+}
+
+TEST(Session, GoingBackUndoesThatAStepWasPassedOver) {
+  const FakeOptions options{.refuse = 2, .refuse_above = 0.006};
+  const auto session = make(options);
+  session->set_real_time(false);
+  session->play();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.failed; }));
+  session->pass_over();
+  ASSERT_TRUE(wait_for_step(*session, 3));
+  session->step_back();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.step == 2; }));
+  session->set("step.time_step", 0.005);
+  step(*session, 2);
+  session->stop();
+  EXPECT_EQ(session->recording().steps.size(), 4u);
+  EXPECT_EQ(replay(session->recording(), options), session->recording().final_hash);
+}
+
+TEST(Session, NamesVerticesAsTheTerminalDoes) {
+  // Vertex 2 of the file was welded to vertex 0, so that the numbers behind it move.
+  Scene scene;
+  scene.cloths.resize(1);
+  Cloth& cloth = scene.cloths[0];
+  cloth.name = "shirt";
+  cloth.mesh.positions.resize(4);
+  cloth.mesh.faces = {{0, 1, 2}, {1, 3, 2}};
+  cloth.pins = {3};
+  scene.obstacles.resize(1);
+  scene.obstacles[0].name = "ball";
+  scene.obstacles[0].mesh.positions.resize(3);
+  scene.obstacles[0].mesh.faces.resize(1);
+  FileLayout layout;
+  layout.vertex = {0, 1, 0, 2, 3};
+  StepReport report;
+  report.accepted = false;
+  report.offending = {{false, {3, 4, 5, 6}}};
+  const std::vector<FileLayout> layouts{layout};
+  const std::string text = failure_sentence(report, scene, ElementNames(scene, layouts), false);
+  EXPECT_NE(text.find("obstacle:ball is pushed into the pinned vertices 4 of cloth:shirt"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(failure_sentence(report, scene, ElementNames(scene), true).find("--precision f64"),
+            std::string::npos);
 }
 
 TEST(Session, RefusesToRunFromABadStartState) {
