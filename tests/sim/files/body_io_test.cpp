@@ -121,6 +121,15 @@ TEST(BodyIo, NamesTheClipsOfAFile) {
   EXPECT_NEAR(body.clips[0].duration, 2, 1e-6);
 }
 
+TEST(BodyIo, CountsMorphTargetsWhichAreNotApplied) {
+  const TemporaryFolder folder;
+  std::string json = triangle_gltf(R"({"byteLength":36})");
+  const std::string plain = R"({"attributes":{"POSITION":0}})";
+  json.replace(json.find(plain), plain.size(),
+               R"({"attributes":{"POSITION":0},"targets":[{"POSITION":0},{"POSITION":0}]})");
+  EXPECT_EQ(read_body(folder.write("a.glb", glb(json, triangle_bytes()))).morphs, 2u);
+}
+
 TEST(BodyIo, RefusesLengthsThatTheFileDoesNotHold) {
   const TemporaryFolder folder;
   const std::string chunk("glTF\2\0\0\0\xff\xff\xff\xff\xff\xff\xff\xffJSON{}", 22);
@@ -196,6 +205,33 @@ TEST(BodyIo, ChildrenThatFailAreReportedAndGone) {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
   EXPECT_LT(usage.ru_maxrss, 1 << 20);  // [KiB]
+}
+
+TEST(BodyProcess, AChildThatWorksWithoutAnEndIsStopped) {
+  const ProcessLimits limits = {.memory = 1 << 20, .result = 1 << 20, .seconds = 60};
+  const ProcessResult spun = run_own_program("--icloth-test-spin", "a.stl", limits);
+  EXPECT_EQ(spun.failure, "was not read within 60 s of processor time");
+
+  // The child limits itself to 1 s; where that fails, the clock of the parent ends it.
+  const ProcessLimits none = {.memory = 1 << 20, .result = 1 << 20, .seconds = 0};
+  const ProcessResult late = run_own_program("--icloth-test-spin", "a.stl", none);
+  EXPECT_EQ(late.failure, "was not read within 0 s");
+}
+
+TEST(BodyProcess, AChildGetsNoMoreMemoryThanItsLimit) {
+  if (limits_for(0).seconds > 4) GTEST_SKIP() << "sanitizers need terabytes of address space";
+  const ProcessLimits limits = {.memory = 1 << 20, .result = 1 << 20, .seconds = 60};
+  const ProcessResult grown = run_own_program("--icloth-test-grow", "a.stl", limits);
+  ASSERT_EQ(grown.failure, "");
+  EXPECT_GT(std::stoi(grown.bytes), 50);
+  EXPECT_LE(std::stoi(grown.bytes), 100);
+}
+
+TEST(BodyProcess, LimitsGrowWithTheFileFromAFirmBase) {
+  const ProcessLimits empty = limits_for(0), large = limits_for(std::uint64_t{100} << 20);
+  EXPECT_EQ(empty.memory >> 20, 640u);
+  EXPECT_EQ((large.memory - empty.memory) >> 20, 4000u);
+  EXPECT_EQ((large.seconds - empty.seconds) / empty.seconds, 25u / 4);
 }
 
 }  // namespace
