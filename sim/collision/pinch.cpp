@@ -138,6 +138,23 @@ bool Pinch::widen(List& list, const Squeeze& squeeze, const std::vector<Vec3d>& 
   return list.size() > before;
 }
 
+bool Pinch::is_near_pinch(const List& list, const Squeeze& squeeze) {
+  const auto is_let_go = [&](Index v) {
+    const auto entry = list.lower_bound({v, 0});
+    return entry != list.end() && entry->first.first == v;
+  };
+
+  // The corners of the squeeze, then two rings of faces around them.
+  std::set<Index> near(squeeze.cloth.begin(), squeeze.cloth.end());
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::vector<Index> inner(near.begin(), near.end());
+    for (const Index v : inner)
+      for (const Index f : faces_of(v))
+        near.insert(world_->face[at(f)].begin(), world_->face[at(f)].end());
+  }
+  return std::ranges::any_of(near, is_let_go);
+}
+
 bool Pinch::release(SubstepContext& step, const Array<Impact>& impacts) {
   // Distances are those at the start of the substep, where nothing intersects.
   const std::vector<Vec3d> x = doubles(step.state.x0);
@@ -163,6 +180,13 @@ bool Pinch::release(SubstepContext& step, const Array<Impact>& impacts) {
   // If no cloth is between two bodies any more, too few vertices around the impacts are let go.
   if (list.size() == held.size())
     for (const Squeeze& squeeze : alone) widen(list, squeeze, x);
+
+  // At the rim of a pinch the cloth is held back by what is squeezed there, so the body that hits
+  // it passes.
+  if (list.size() == held.size())
+    for (const Squeeze& squeeze : alone)
+      if (is_near_pinch(held, squeeze))
+        for (const Index v : squeeze.cloth) let_go(list, v, squeeze.body, x);
 
   if (list.size() == held.size()) return false;
   write(step.state, list);

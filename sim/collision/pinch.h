@@ -62,6 +62,8 @@ class Pinch {
   void let_go(List& list, Index vertex, Index body, const std::vector<Vec3d>& x);
   /// Lets go of the neighbours of vertices that are let go already. False: there were none.
   bool widen(List& list, const Squeeze& squeeze, const std::vector<Vec3d>& x);
+  /// Whether cloth within two edges of a squeeze is let go from some body.
+  bool is_near_pinch(const List& list, const Squeeze& squeeze);
   bool is_outside(const LetGo& entry, const std::vector<Vec3d>& x, double least);
 
   const World* world_;

@@ -105,6 +105,23 @@ TEST_P(Pinch, SpheresThatOverlapALittleOrMuchLetTheClothGoAndTakeItBack) {
   }
 }
 
+TEST_P(Pinch, LongBodiesWithTautClothBetween) {
+  // At the rim of the pinch the cloth that is squeezed holds back the cloth beside it.
+  for (const double overlap : {0.01, 0.025}) {
+    SCOPED_TRACE(overlap);
+    auto scene = new_scene();
+    scene->parameters.step.time_step = 0.005;
+    GridShape shape = hanging(0.5, overlap < 0.02 ? 500 : 1000);
+    shape.width = 0.3;
+    scene->cloths.push_back(make_sheet(shape, {0, 0.05, 0}));
+    scene->cloths[0].pins = grid_vertices(make_grid(shape), "top");
+    for (const double side : {-1.0, 1.0})
+      add_body(*scene, make_capsule(0.05, 0.4, 400), {0, 0, side * 0.07},
+               {0, 0, -side * (0.02 + overlap / 2)});
+    expect_pinched_for_a_while(scene, GetParam());
+  }
+}
+
 TEST_P(Pinch, ABodyAgainstTheFloor) {
   auto scene = new_scene();
   scene->cloths.push_back(make_sheet(lying(0.2, 200), {0, 0.002, 0}));
