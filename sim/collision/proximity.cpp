@@ -51,11 +51,13 @@ struct ContactMaker {
       Real low_q = coordinate(q[0], axis), high_q = low_q;
       for (int k = 1; k < np; ++k) {
         const Real c = coordinate(p[k], axis);
-        low_p = std::fmin(low_p, c), high_p = std::fmax(high_p, c);
+        low_p = std::fmin(low_p, c);
+        high_p = std::fmax(high_p, c);
       }
       for (int k = 1; k < nq; ++k) {
         const Real c = coordinate(q[k], axis);
-        low_q = std::fmin(low_q, c), high_q = std::fmax(high_q, c);
+        low_q = std::fmin(low_q, c);
+        high_q = std::fmax(high_q, c);
       }
 
       // The boxes are apart when they are apart along one axis.
@@ -69,11 +71,10 @@ struct ContactMaker {
     return axis == 0 ? p.x : (axis == 1 ? p.y : p.z);
   }
 
-  /// Fills the contact of a stencil; false when the pair does not repel in this step. `across`: a
-  /// vector perpendicular to both elements, zero when there is no such direction. It gives the
-  /// normal, since the gap vector of a small gap has lost its digits.
-  ICLOTH_HD bool make(Contact& c, Vec3r across) const {
-    if (let_go.ignores(c.s.v)) return false;
+  /// Writes gap and normal; false when the pair is too far apart to repel. `across` is
+  /// perpendicular to both elements, or zero where no such direction is known. It gives the normal,
+  /// since the gap vector of a small gap has lost its digits.
+  ICLOTH_HD bool measure_gap(Contact& c, Vec3r across) const {
     const Vec3r g = apply(c.s, x);
     c.gap = norm(g);
     if (!(c.gap < reach) || c.gap <= 0) return false;
@@ -85,38 +86,75 @@ struct ContactMaker {
       c.normal = (along > 0 ? 1 / length : -1 / length) * across;
       c.gap = dot(c.normal, g);
     }
+    return true;
+  }
 
-    // The expected motion includes the fall of free vertices. Pairs that cannot move are left out.
+  /// Whether the pair is expected to be near at the end of the step. Pairs a little further apart
+  /// than the thickness count too, since elastic forces may bring them together.
+  ICLOTH_HD bool comes_near(const Contact& c) const {
     Vec3r relative{};
     Real mobility = 0;
+
+    // The expected motion includes the fall of free vertices. Pairs that cannot move are left out.
     for (int a = 0; a < 4; ++a) {
       const Index i = c.s.v[a];
       relative += c.s.w[a] * v[i];
       if (inverse_mass[i] > 0) relative += c.s.w[a] * fall_speed;
       mobility += c.s.w[a] * c.s.w[a] * inverse_mass[i];
     }
-    if (!(mobility > 0)) return false;
+    return mobility > 0 && c.gap + dt * dot(c.normal, relative) < thickness + slack;
+  }
 
-    // Pairs a little further apart are kept too: elastic forces may bring them together.
-    if (!(c.gap + dt * dot(c.normal, relative) < thickness + slack)) return false;
+  ICLOTH_HD bool touches_obstacle(const Stencil& s) const {
+    bool touches = false;
+    for (const Index i : s.v) touches = touches || i >= cloth_vertices;
+    return touches;
+  }
 
-    // Elements that are near in the rest shape too are neighbours in the fabric, not layers.
-    const Index part = object[c.s.v[0]];
-    bool same_cloth = true, touches_obstacle = false;
-    for (int a = 0; a < 4; ++a) {
-      touches_obstacle = touches_obstacle || c.s.v[a] >= cloth_vertices;
-      same_cloth = same_cloth && object[c.s.v[a]] == part;
-    }
-    if (same_cloth && !touches_obstacle && norm2(apply(c.s, rest)) < 4 * thickness * thickness)
-      return false;
+  /// Whether the elements are of one cloth and near each other at rest: such elements are
+  /// neighbours in the fabric, not layers.
+  ICLOTH_HD bool are_neighbours(const Stencil& s) const {
+    bool same_cloth = true;
+    for (const Index i : s.v)
+      same_cloth = same_cloth && i < cloth_vertices && object[i] == object[s.v[0]];
+    return same_cloth && norm2(apply(s, rest)) < 4 * thickness * thickness;
+  }
 
+  /// Fills the contact of a stencil; false when the pair does not repel in this step. `across` is
+  /// that of measure_gap.
+  ICLOTH_HD bool make(Contact& c, Vec3r across) const {
+    if (let_go.ignores(c.s.v) || !measure_gap(c, across)) return false;
+    if (!comes_near(c) || are_neighbours(c.s)) return false;
     c.thickness = thickness;
     c.held = Vec3r{};
     c.stuck = 0;
-    c.friction = coefficient(c.s, touches_obstacle);
+    c.friction = coefficient(c.s, touches_obstacle(c.s));
     return true;
   }
 };
+
+ContactMaker contact_maker(const SubstepContext& step, const LetGoView& let_go) {
+  const Topology& mesh = step.mesh;
+  const State& s = step.state;
+  const Real h = step.thickness();
+  const ProximityParameters& p = step.parameters.proximity;
+  return {.x = s.x0.view(),
+          .v = s.v.view(),
+          .rest = mesh.rest.view(),
+          .inverse_mass = s.inverse_mass.view(),
+          .object = mesh.object.view(),
+          .cloth_vertices = mesh.cloth_vertices,
+          .thickness = h,
+          .slack = static_cast<Real>(0.25) * mesh.median_edge,
+          .reach = h + static_cast<Real>(0.5) * mesh.median_edge,
+          .dt = step.dt,
+          .fall_speed = step.dt * step.gravity(),
+          .friction_cloth = static_cast<Real>(p.friction_cloth),
+          .friction_obstacle = static_cast<Real>(p.friction_obstacle),
+          .own_friction = mesh.object_friction.view(),
+          .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness)),
+          .let_go = let_go};
+}
 
 struct FindVertexFace {
   ContactMaker maker;
@@ -316,25 +354,8 @@ void Proximity::add(const Array<Contact>& more) {
 
 void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const LetGoView& let_go) {
   const Topology& mesh = step.mesh;
-  const State& s = step.state;
-  const Real h = step.thickness();
-  const ProximityParameters& p = step.parameters.proximity;
-  const ContactMaker maker{.x = s.x0.view(),
-                           .v = s.v.view(),
-                           .rest = mesh.rest.view(),
-                           .inverse_mass = s.inverse_mass.view(),
-                           .object = mesh.object.view(),
-                           .cloth_vertices = mesh.cloth_vertices,
-                           .thickness = h,
-                           .slack = static_cast<Real>(0.25) * mesh.median_edge,
-                           .reach = h + static_cast<Real>(0.5) * mesh.median_edge,
-                           .dt = step.dt,
-                           .fall_speed = step.dt * step.gravity(),
-                           .friction_cloth = static_cast<Real>(p.friction_cloth),
-                           .friction_obstacle = static_cast<Real>(p.friction_obstacle),
-                           .own_friction = mesh.object_friction.view(),
-                           .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness)),
-                           .let_go = let_go};
+  State& s = step.state;
+  const ContactMaker maker = contact_maker(step, let_go);
 
   // Pairs of a vertex and a face come before pairs of edges, each kind in the order of the keys.
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
@@ -354,12 +375,12 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const 
   // little by little.
   recall_friction(s);
   if (step.time == 0) note_start_gaps(step);
-  if (step.time >= kRampTime) step.state.start_gap.resize(0);
+  if (step.time >= kRampTime) s.start_gap.resize(0);
   if (!s.start_gap.empty()) ramp_thickness(step);
 
   step.report.proximity_pairs = contacts_.size();
-  step.report.min_gap = static_cast<double>(
-      reduce("proximity.min_gap", contacts_.size(), h, GapOf{contacts_.view()}, Min{}));
+  step.report.min_gap = static_cast<double>(reduce(
+      "proximity.min_gap", contacts_.size(), step.thickness(), GapOf{contacts_.view()}, Min{}));
 }
 
 }  // namespace icloth::ICLOTH_BUILD
