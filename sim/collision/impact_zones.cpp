@@ -158,26 +158,31 @@ void ImpactZones::label_zones(const SubstepContext& step) {
   }
 }
 
-void ImpactZones::order_by_zone(const SubstepContext& step) {
-  const Index n = kept_.size(), active = unsorted_active_.size();
-  const State& s = step.state;
-
-  // Sorts vertices or constraints by the label of their zone; writes where each zone begins.
-  const auto sort_by_label = [&](const Array<Index>& label, Array<Index>& order,
-                                 Array<Index>& first) {
-    const Index count = label.size();
-    keys_.resize(count);
-    order.resize(count);
-    for_each("impact_zones.order", count, LabelKeys{label.view(), keys_.view(), order.view()});
-    sort_by_key("impact_zones.order", keys_.view(), order.view(), 31);
-    compact("impact_zones.order", count, StartsRange{keys_.view()}, first);
-    first.resize_keep(first.size() + 1);
-    for_each("impact_zones.order", 1, SetLast{first.view(), count});
-  };
+void ImpactZones::order_by_zone() {
   sort_by_label(label_, vertex_order_, vertex_first_);
   sort_by_label(constraint_label_, kept_of_, constraint_first_);
+}
 
-  // Vertices and constraints are loaded in the order of their zones.
+/// Sorts vertices or constraints by the label of their zone; writes where each zone begins.
+void ImpactZones::sort_by_label(const Array<Index>& label, Array<Index>& order,
+                                Array<Index>& first) {
+  const Index count = label.size();
+  keys_.resize(count);
+  order.resize(count);
+  for_each("impact_zones.order", count, LabelKeys{label.view(), keys_.view(), order.view()});
+  sort_by_key("impact_zones.order", keys_.view(), order.view(), 31);
+
+  // One place more than there are zones tells where the last one ends.
+  compact("impact_zones.order", count, StartsRange{keys_.view()}, first);
+  first.resize_keep(first.size() + 1);
+  for_each("impact_zones.order", 1, SetLast{first.view(), count});
+}
+
+/// Loads vertices and constraints in the order of their zones, so that the solver of a zone reads
+/// one range of each array.
+void ImpactZones::load_zones(const SubstepContext& step) {
+  const Index n = kept_.size(), active = unsorted_active_.size();
+  const State& s = step.state;
   for (Array<Vec3r>* a : {&target_, &x_, &before_, &direction_}) a->resize(active);
   mass_.resize(active);
   for (Array<Real>* a : {&multiplier_, &shortfall_, &scratch1_, &scratch2_}) a->resize(n);
@@ -186,7 +191,7 @@ void ImpactZones::order_by_zone(const SubstepContext& step) {
   constraints_.resize(n);
   zone_slots_.resize(n);
 
-  // The solver of a zone then reads one range of each array.
+  // A vertex starts where the last round left it, and a constraint with its multiplier.
   for_each("impact_zones.load", active,
            LoadVertices{.order = vertex_order_.view(),
                         .old_active = unsorted_active_.view(),
@@ -211,29 +216,49 @@ void ImpactZones::order_by_zone(const SubstepContext& step) {
   incidence_.build(zone_slots_.view(), active);
 }
 
-template <template <class> class Solver>
-void ImpactZones::solve_zones(const SolveZone<Solver>& solve) {
-  const Index zones = vertex_first_.size() - 1;
-  for_each_team("impact_zones.solve", zones, solve);
-  if (active_.size() <= kLargestTeamZone) return;
-  compact("impact_zones.large", zones, IsLargeZone{vertex_first_.view()}, picked_);
-  const Index size = active_.size() + constraints_.size();
-  for (const Index zone : picked_.download())
-    with_device_team("impact_zones.solve_large", size, SolveLargeZone<Solver>{solve, zone});
-}
-
 void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
-  State& s = step.state;
-  const ImpactZoneParameters& p = step.parameters.impact_zones;
   corrected_ = true;
 
   // The impacts of this round join the kept constraints; those connected by vertices make a zone.
   merge(impacts);
   label_zones(step);
-  order_by_zone(step);
+  order_by_zone();
+  load_zones(step);
+  solve_zones(step);
 
-  // Every zone is solved on its own.
+  // The next round looks at the vertices that moved; idle constraints are dropped.
+  store(step);
+  drop_idle();
+  report(step, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
+                      IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
+}
+
+/// Each zone works on its own ranges of these arrays.
+ZoneArrays ImpactZones::zone_arrays(const State& state) {
+  return {.constraints = constraints_.view(),
+          .constraint_first = constraint_first_.view(),
+          .vertex_first = vertex_first_.view(),
+          .incidence_first = incidence_.first(),
+          .incidence = incidence_.entries(),
+          .target = target_.view(),
+          .mass = mass_.view(),
+          .fixed = state.x1.view(),
+          .start = state.x0.view(),
+          .x = x_.view(),
+          .before = before_.view(),
+          .direction = direction_.view(),
+          .multiplier = multiplier_.view(),
+          .shortfall = shortfall_.view(),
+          .scratch1 = scratch1_.view(),
+          .scratch2 = scratch2_.view(),
+          .result = results_.view()};
+}
+
+/// Solves every zone on its own.
+void ImpactZones::solve_zones(const SubstepContext& step) {
+  const ImpactZoneParameters& p = step.parameters.impact_zones;
   results_.resize(vertex_first_.size() - 1);
+  const ZoneArrays arrays = zone_arrays(step.state);
   const ZoneSettings settings{.offset = step.offset(),
                               .tolerance = Real(0.2) * step.offset(),
                               .iterations = p.iterations,
@@ -242,42 +267,28 @@ void ImpactZones::solve(SubstepContext& step, const Array<Impact>& impacts) {
                               .step_threshold = static_cast<Real>(p.step_threshold),
                               .chebyshev = p.chebyshev};
 
-  // Each zone works on its own ranges of these arrays.
-  const ZoneArrays arrays{.constraints = constraints_.view(),
-                          .constraint_first = constraint_first_.view(),
-                          .vertex_first = vertex_first_.view(),
-                          .incidence_first = incidence_.first(),
-                          .incidence = incidence_.entries(),
-                          .target = target_.view(),
-                          .mass = mass_.view(),
-                          .fixed = s.x1.view(),
-                          .start = s.x0.view(),
-                          .x = x_.view(),
-                          .before = before_.view(),
-                          .direction = direction_.view(),
-                          .multiplier = multiplier_.view(),
-                          .shortfall = shortfall_.view(),
-                          .scratch1 = scratch1_.view(),
-                          .scratch2 = scratch2_.view(),
-                          .result = results_.view()};
-
   switch (p.solver) {
     case ZoneSolver::augmented_lagrangian:
-      solve_zones(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
+      solve_zones_with(SolveZone<ZoneAugmentedLagrangian>{arrays, settings});
       break;
     case ZoneSolver::dual:
-      solve_zones(SolveZone<ZoneDual>{arrays, settings});
+      solve_zones_with(SolveZone<ZoneDual>{arrays, settings});
       break;
     case ZoneSolver::linear:
-      solve_zones(SolveZone<ZoneLinear>{arrays, settings});
+      solve_zones_with(SolveZone<ZoneLinear>{arrays, settings});
       break;
   }
+}
 
-  // The next round looks at the vertices that moved; idle constraints are dropped.
-  store(step);
-  drop_idle();
-  report(step, reduce("impact_zones.dynamic_faces", step.mesh.cloth_faces, Index{0},
-                      IsDynamic{step.mesh.face.view(), dirty_.view()}, Sum{}));
+template <template <class> class Solver>
+void ImpactZones::solve_zones_with(const SolveZone<Solver>& solve) {
+  const Index zones = vertex_first_.size() - 1;
+  for_each_team("impact_zones.solve", zones, solve);
+  if (active_.size() <= kLargestTeamZone) return;
+  compact("impact_zones.large", zones, IsLargeZone{vertex_first_.view()}, picked_);
+  const Index size = active_.size() + constraints_.size();
+  for (const Index zone : picked_.download())
+    with_device_team("impact_zones.solve_large", size, SolveLargeZone<Solver>{solve, zone});
 }
 
 void ImpactZones::store(SubstepContext& step) {

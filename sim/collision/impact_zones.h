@@ -37,9 +37,13 @@ class ImpactZones {
  private:
   void merge(const Array<Impact>& impacts);
   void label_zones(const SubstepContext& step);
-  void order_by_zone(const SubstepContext& step);
+  void order_by_zone();
+  void sort_by_label(const Array<Index>& label, Array<Index>& order, Array<Index>& first);
+  void load_zones(const SubstepContext& step);
+  ZoneArrays zone_arrays(const State& state);
+  void solve_zones(const SubstepContext& step);
   template <template <class> class Solver>
-  void solve_zones(const SolveZone<Solver>& solve);
+  void solve_zones_with(const SolveZone<Solver>& solve);
   void store(SubstepContext& step);
   void drop_idle();
   void report(SubstepContext& step, Index dynamic_faces) const;
