@@ -136,6 +136,16 @@ void mark_start_intersections(const Scene& scene, bool single_precision, const W
   shown.marked_faces.insert(shown.marked_faces.end(), close.begin(), close.end());
 }
 
+Image draw(Renderer& renderer, const Shown& shown, const Camera& camera, Size size, ViewMode view) {
+  Frame frame;
+  frame.positions = shown.positions;
+  frame.on_device = shown.on_device.get();
+  frame.handles = shown.handles;
+  frame.marked_faces = shown.marked_faces;
+  frame.view = view;
+  return renderer.picture(frame, camera, size.width, size.height);
+}
+
 }  // namespace
 
 int run_render(const RenderOptions& options) {
@@ -182,16 +192,8 @@ int run_render(const RenderOptions& options) {
   if (result.start_refused)
     mark_start_intersections(*job.scene, build != Build::cpu64, world, result, shown);
 
-  // The picture shows that state.
-  Frame frame;
-  frame.positions = shown.positions;
-  frame.on_device = shown.on_device.get();
-  frame.handles = shown.handles;
-  frame.marked_faces = shown.marked_faces;
-  frame.view = view;
-  const Image image = renderer.picture(frame, camera, size.width, size.height);
-
   // A picture without interop is no success when interop was demanded.
+  const Image image = draw(renderer, shown, camera, size, view);
   if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
     throw DeviceError("--vertices interop: " + renderer.upload_path());
   write_png(options.out, image);

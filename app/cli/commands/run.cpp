@@ -52,17 +52,11 @@ void print_profile(const RunStatistics& statistics) {
   }
 }
 
-}  // namespace
-
-int run_run(const RunOptions& options) {
+/// Chooses scene, device and length of a run, and the recording that moves its hands.
+HeadlessJob make_job(const RunOptions& options, Recording& input) {
   const SimulationOptions& common = options.simulation;
-
-  check(options);
   HeadlessJob job;
   job.scene = load_scene(common.scene, scene_overrides(common), {}, &job.origin);
-
-  // The hands come from a recording or from the scene's script, and may be recorded again.
-  Recording input, record;
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     check_recording(input, *job.scene, options.input_file);
@@ -73,49 +67,84 @@ int run_run(const RunOptions& options) {
   job.build = choose_build(common);
   const bool whole_input = job.input && common.steps < 0 && common.time < 0;
   job.steps = whole_input ? static_cast<long>(input.steps.size()) : step_count(common, *job.scene);
-
-  record.scene = common.scene;
-  record.build = build_name(job.build);
-  record.overrides = scene_overrides(common);
-  if (!options.record_file.empty()) job.record = &record;
   job.stop_on_failure = options.on_failure == "stop";
   job.pass_over = !job.stop_on_failure;
   job.quiet = common.quiet;
+  return job;
+}
 
-  // Statistics and frames are written while the run goes.
-  set_thread_count(common.threads);
-  StatisticsFile stats(options.stats_file);
-  FrameExport frames(options.out, options.every);
-  std::vector<Vec3f> positions;
-  long step = 0;
-  job.watch = [&](const Simulator& simulator, const StepReport* report) {
-    if (report) stats.add(*report);
+/// A recording of what a run is given; the run adds its steps and its end.
+Recording begin_recording(const SimulationOptions& common, Build build) {
+  Recording record;
+  record.scene = common.scene;
+  record.build = build_name(build);
+  record.overrides = scene_overrides(common);
+  return record;
+}
+
+/// The files that are written while a run goes.
+class RunFiles {
+ public:
+  explicit RunFiles(const RunOptions& options)
+      : stats_(options.stats_file), frames_(options.out, options.every) {}
+
+  /// Takes the start state, without a report, or the state after a step.
+  void add(const HeadlessJob& job, const Simulator& simulator, const StepReport* report) {
+    if (report) stats_.add(*report);
 
     // A refused step that ends the run leaves the state of the step before as the last one.
     const bool stopped = report && !report->accepted && job.stop_on_failure;
-    if (report && !stopped) ++step;
-    const bool last = stopped || step == job.steps;
-    if (!frames.wants(step, last)) return;
-    simulator.positions(positions);
-    frames.write(named_meshes(*job.scene, positions, job.origin.layouts).meshes, step,
-                 simulator.time(), last);
-  };
+    if (report && !stopped) ++step_;
+    const bool last = stopped || step_ == job.steps;
+    if (!frames_.wants(step_, last)) return;
+    simulator.positions(positions_);
+    frames_.write(named_meshes(*job.scene, positions_, job.origin.layouts).meshes, step_,
+                  simulator.time(), last);
+  }
 
-  // The run itself.
+  void finish(const RunStatistics& statistics) { stats_.finish(statistics); }
+
+ private:
+  StatisticsFile stats_;
+  FrameExport frames_;
+  std::vector<Vec3f> positions_;
+  long step_ = 0;
+};
+
+/// Prints what the options ask for about the end of a run. A failure tells how to repeat it.
+void print_end(const RunOptions& options, Build build, const HeadlessResult& result) {
+  if (!options.simulation.quiet)
+    std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+  if (options.profile) print_profile(result.statistics);
+  if (!result.refused.empty())
+    std::fprintf(stderr, "icloth: repeat with: %s\n",
+                 repeat_command(options, build, result.refused.front().step + 1).c_str());
+}
+
+}  // namespace
+
+int run_run(const RunOptions& options) {
+  check(options);
+  Recording input;
+  HeadlessJob job = make_job(options, input);
+  Recording record = begin_recording(options.simulation, job.build);
+  if (!options.record_file.empty()) job.record = &record;
+
+  // Statistics and frames are written while the run goes.
+  set_thread_count(options.simulation.threads);
+  RunFiles files(options);
+  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+    files.add(job, simulator, report);
+  };
   profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
   profile_enable(false);
   if (result.start_refused) return result.start_exit_code;
 
-  // The outputs at its end; a failure tells how to repeat it.
-  stats.finish(result.statistics);
+  // The rest is written at its end.
+  files.finish(result.statistics);
   if (job.record) save_recording(record, options.record_file);
-  if (!common.quiet)
-    std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
-  if (options.profile) print_profile(result.statistics);
-  if (!result.refused.empty())
-    std::fprintf(stderr, "icloth: repeat with: %s\n",
-                 repeat_command(options, job.build, result.refused.front().step + 1).c_str());
+  print_end(options, job.build, result);
   return result.clean() ? 0 : 1;
 }
 
