@@ -85,6 +85,27 @@ struct ConjugateGradients {
         Sum{});
   }
 
+  /// Goes by α p and carries the residual along; q is A p.
+  template <class Team>
+  ICLOTH_HD Dots step_along(Team& team, Real alpha) const {
+    return precondition(
+        team,
+        [&](Index i) {
+          x[i] += alpha * p[i];
+          return r[i] -= alpha * q[i];
+        },
+        r, z);
+  }
+
+  /// Goes by α p and computes the residual anew.
+  template <class Team>
+  ICLOTH_HD Dots step_anew(Team& team, Real alpha) const {
+    team.for_each(b.size(), [&](Index i) { x[i] += alpha * p[i]; });
+    multiply(team, x);
+    return precondition(
+        team, [&](Index i) { return true_residual(i); }, r, z);
+  }
+
   template <class Team>
   ICLOTH_HD void operator()(Team& team) const {
     const Index n = b.size();
@@ -125,7 +146,10 @@ struct ConjugateGradients {
         team, [&](Index i) { return true_residual(i); }, r, z);
 
     // The first direction is the preconditioned residual. The start is the best x so far.
-    team.for_each(n, [&](Index i) { p[i] = z[i], best[i] = x[i]; });
+    team.for_each(n, [&](Index i) {
+      p[i] = z[i];
+      best[i] = x[i];
+    });
     double best_rr = dots.rr;
     int idle = 0;
 
@@ -139,25 +163,14 @@ struct ConjugateGradients {
 
       // Now and then the residual is computed anew, since the one that is carried along drifts away
       // by rounding. When it stops improving, rounding rules and the iteration ends.
-      if (++result.iterations % kReplaceEvery == 0) {
-        team.for_each(n, [&](Index i) { x[i] += alpha * p[i]; });
-        multiply(team, x);
-        dots = precondition(
-            team, [&](Index i) { return true_residual(i); }, r, z);
-        if (dots.rr < best_rr) {
-          best_rr = dots.rr, idle = 0;
-          team.for_each(n, [&](Index i) { best[i] = x[i]; });
-        } else if (++idle == kPatience) {
-          break;
-        }
-      } else {
-        dots = precondition(
-            team,
-            [&](Index i) {
-              x[i] += alpha * p[i];
-              return r[i] -= alpha * q[i];
-            },
-            r, z);
+      const bool replace = ++result.iterations % kReplaceEvery == 0;
+      dots = replace ? step_anew(team, alpha) : step_along(team, alpha);
+      if (replace && dots.rr < best_rr) {
+        best_rr = dots.rr;
+        idle = 0;
+        team.for_each(n, [&](Index i) { best[i] = x[i]; });
+      } else if (replace && ++idle == kPatience) {
+        break;
       }
 
       // The next direction is conjugate to the last one.
@@ -191,7 +204,7 @@ double bytes_per_iteration(const SystemView& system, Index rows) {
 
 /// Factor by which the true residual may exceed the tolerance: the one that the iterations carry
 /// along differs from it by rounding.
-constexpr double kMissed = 1.5;
+constexpr double kResidualSlack = 1.5;
 
 }  // namespace
 
@@ -221,8 +234,6 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
                                                                    .tolerance = options.tolerance,
                                                                    .max_iterations = max_iterations,
                                                                    .solution = solution_.view()});
-  };
-  const auto finish = [&] {
     LinearSolution solution;
     solution_.download_range(0, {&solution, 1});
     return solution;
@@ -234,19 +245,18 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   if (options.preconditioner == Preconditioner::multilevel) {
     if (!options.same_matrix) hierarchy_.fill_matrix(system);
     hierarchy_.fill_contacts(system);
-    iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
-    coarse = finish();
+    coarse = iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
     coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());
 
     // Rounding can hide the masses in the sums of a level; block-Jacobi gets further then.
-    if (!(coarse.residual > kMissed * options.tolerance) ||
+    if (!(coarse.residual > kResidualSlack * options.tolerance) ||
         coarse.iterations >= options.max_iterations)
       return coarse;
   }
 
   // Block-Jacobi goes on from the x that it left, with the iterations that are left.
-  iterate(BlockJacobi{inverse_diagonal}, options.max_iterations - coarse.iterations);
-  LinearSolution solution = finish();
+  LinearSolution solution =
+      iterate(BlockJacobi{inverse_diagonal}, options.max_iterations - coarse.iterations);
   solution.bytes = coarse.bytes + solution.iterations * bytes;
   solution.iterations += coarse.iterations;
   return solution;
