@@ -128,6 +128,35 @@ void check_total(const std::string& where, double triangles, const SceneLimits& 
                      std::to_string(limits.triangles));
 }
 
+/// Adds the triangles of the cloths that are no grids to the count.
+std::vector<LoadedCloth> parse_cloths(const JsonValue& list, const SceneFolder& folder,
+                                      double& triangles) {
+  std::vector<LoadedCloth> cloths;
+  std::set<std::string> names;
+  for (const JsonValue& item : list.items()) {
+    cloths.push_back(parse_cloth(item, folder, cloths.size()));
+    const LoadedCloth& loaded = cloths.back();
+    check_name(item.where(), loaded.cloth, names);
+    if (!loaded.grid) triangles += static_cast<double>(loaded.cloth.mesh.faces.size());
+    check_total(item.where() + " and the others", triangles, folder.limits);
+  }
+  return cloths;
+}
+
+/// Adds the triangles of the obstacles to the count.
+std::vector<Obstacle> parse_obstacles(const JsonValue& list, const SceneFolder& folder,
+                                      double& triangles) {
+  std::vector<Obstacle> obstacles;
+  std::set<std::string> names;
+  for (const JsonValue& item : list.items()) {
+    obstacles.push_back(parse_obstacle(item, folder, obstacles.size()));
+    check_name(item.where(), obstacles.back(), names);
+    triangles += static_cast<double>(obstacles.back().mesh.faces.size());
+    check_total(item.where() + " and the others", triangles, folder.limits);
+  }
+  return obstacles;
+}
+
 void parse_settings(JsonObject& object, Scene& scene) {
   scene.name = excerpt(object.text("name", scene.source));
   object.text("description", "");
@@ -246,26 +275,13 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   scene.source = source;
   parse_settings(object, scene);
 
-  // Triangles are counted while objects are read, so that a small file cannot take all memory.
-  std::vector<LoadedCloth> cloths;
-  std::set<std::string> cloth_names, obstacle_names;
+  // Triangles are counted while objects are read, so that a small file cannot take all memory. The
+  // grids are counted before any of them is made.
   double triangles = std::round(total_grid_triangles(json) * folder.triangle_scale);
   check_total(source + ": cloths", triangles, folder.limits);
-  for (const JsonValue& item : object.required("cloths").items()) {
-    cloths.push_back(parse_cloth(item, folder, cloths.size()));
-    check_name(item.where(), cloths.back().cloth, cloth_names);
-    if (!cloths.back().grid)
-      triangles += static_cast<double>(cloths.back().cloth.mesh.faces.size());
-    check_total(item.where() + " and the others", triangles, folder.limits);
-  }
-  if (object.has("obstacles")) {
-    for (const JsonValue& item : object["obstacles"].items()) {
-      scene.obstacles.push_back(parse_obstacle(item, folder, scene.obstacles.size()));
-      check_name(item.where(), scene.obstacles.back(), obstacle_names);
-      triangles += static_cast<double>(scene.obstacles.back().mesh.faces.size());
-      check_total(item.where() + " and the others", triangles, folder.limits);
-    }
-  }
+  std::vector<LoadedCloth> cloths = parse_cloths(object.required("cloths"), folder, triangles);
+  if (object.has("obstacles"))
+    scene.obstacles = parse_obstacles(object["obstacles"], folder, triangles);
 
   // Grabs name vertices of cloths, which are all known now.
   if (object.has("input"))
