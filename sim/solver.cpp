@@ -9,20 +9,12 @@
 #include "kernels/parallel/reserve.h"
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/fabrics.h"
+#include "sim/state/upload.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
 Real real(double value) { return static_cast<Real>(value); }
-
-/// Host list to device array with a conversion of each element.
-template <class To, class From, class Convert>
-void upload_as(Array<To>& array, const std::vector<From>& from, const Convert& to) {
-  std::vector<To> host;
-  host.reserve(from.size());
-  for (const From& value : from) host.push_back(to(value));
-  array.upload(host);
-}
 
 Vec3r to_real(Vec3d a) { return convert<Real>(a); }
 
@@ -73,53 +65,6 @@ struct Speed {
 };
 
 }  // namespace
-
-void Topology::upload(const World& world) {
-  cloth_vertices = world.cloth_vertices, vertices = world.vertices;
-  cloth_edges = world.cloth_edges, edges = world.edges;
-  cloth_faces = world.cloth_faces, faces = world.faces;
-  hinge_count = static_cast<Index>(world.hinges.size());
-  median_edge = real(world.median_edge);
-
-  // The mesh comes with the measures of its elements at rest.
-  const auto number = [](double v) { return real(v); };
-  upload_as(face, world.face, [](const Triangle& t) { return Int3{{t[0], t[1], t[2]}}; });
-  upload_as(edge, world.edge, [](const std::array<Index, 2>& e) { return Int2{{e[0], e[1]}}; });
-  upload_as(rest, world.rest, to_real);
-  upload_as(mass, world.mass, number);
-  upload_as(vertex_area, world.area, number);
-  upload_as(edge_area, world.edge_area, number);
-  upload_as(face_area, world.face_area, number);
-  upload_as(face_inverse, world.face_inverse, [](const std::array<double, 4>& m) {
-    return Inverse{{real(m[0]), real(m[1]), real(m[2]), real(m[3])}};
-  });
-
-  // A friction of its own is rare, and where no object has one the list stays empty.
-  object.upload(world.object);
-  const bool own_friction =
-      std::any_of(world.objects.begin(), world.objects.end(),
-                  [](const WorldObject& o) { return o.friction.has_value(); });
-  object_friction.resize(0);
-  if (own_friction)
-    upload_as(object_friction, world.objects,
-              [](const WorldObject& o) { return real(o.friction.value_or(-1)); });
-
-  // Each face has the fabric of its cloth, and a hinge those of its two faces.
-  face_fabric.upload(world.face_material);
-  upload_as(hinge, world.hinges, [&](const Hinge& h) {
-    const auto fabric_of = [&](Index f) {
-      return world.face_material[static_cast<std::size_t>(f)];
-    };
-    return HingeRest{{{h.vertices[0], h.vertices[1], h.vertices[2], h.vertices[3]}},
-                     fabric_of(h.face0),
-                     fabric_of(h.face1),
-                     real(h.rest_angle),
-                     real(h.rest_length),
-                     real(h.rest_area),
-                     real(h.direction),
-                     real(h.weight)};
-  });
-}
 
 Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
     : device_(device),
