@@ -21,7 +21,7 @@ InputEvent release_of(int handle) {
   return event;
 }
 
-/// What went wrong in a step, and what helps.
+/// The fault of a step, and the remedy.
 struct Failure {
   std::string what, remedy;
 };
