@@ -121,7 +121,10 @@ struct StiffnessTable {
         w *= far != 0 ? along[a] : 1 - along[a];
       }
       const Stiffness& k = table[node];
-      sum.k11 += w * k.k11, sum.k12 += w * k.k12, sum.k22 += w * k.k22, sum.k33 += w * k.k33;
+      sum.k11 += w * k.k11;
+      sum.k12 += w * k.k12;
+      sum.k22 += w * k.k22;
+      sum.k33 += w * k.k33;
     }
     return sum;
   }

@@ -18,8 +18,12 @@ ICLOTH_HD inline FaceFrame face_frame(const Vec3r x[3], const Real inverse[4]) {
   FaceFrame f;
   f.fu = inverse[0] * e0 + inverse[2] * e1;
   f.fv = inverse[1] * e0 + inverse[3] * e1;
-  f.bu[1] = inverse[0], f.bu[2] = inverse[2], f.bu[0] = -(inverse[0] + inverse[2]);
-  f.bv[1] = inverse[1], f.bv[2] = inverse[3], f.bv[0] = -(inverse[1] + inverse[3]);
+  f.bu[0] = -(inverse[0] + inverse[2]);
+  f.bu[1] = inverse[0];
+  f.bu[2] = inverse[2];
+  f.bv[0] = -(inverse[1] + inverse[3]);
+  f.bv[1] = inverse[1];
+  f.bv[2] = inverse[3];
   return f;
 }
 

@@ -144,7 +144,8 @@ struct Multilevel {
     for (int sweep = 0; sweep < kLastSweeps; ++sweep) {
       team.for_each(count, [&](Index k) { to[first + k] = swept(first + k, from); });
       const View<Vec3r> last = from;
-      from = to, to = last;
+      from = to;
+      to = last;
     }
   }
 

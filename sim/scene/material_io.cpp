@@ -57,7 +57,8 @@ void read_orthotropic(const JsonValue& value, Material& material) {
 
   // With a larger Poisson's ratio the tensile energy would not be positive for every strain.
   const std::vector<double> young = object.required("young").numbers(2, kPositive);
-  f.young_u = young[0], f.young_v = young[1];
+  f.young_u = young[0];
+  f.young_v = young[1];
   f.poisson = object.number("poisson", 0, {-10, 10});
   const double most = kLargestCoupling * std::sqrt(f.young_u / f.young_v);
   if (!(std::fabs(f.poisson) < most))
@@ -73,7 +74,9 @@ void read_orthotropic(const JsonValue& value, Material& material) {
     if (count != 2 && count != 3)
       bending.refuse("moduli along weft and warp in N m, and perhaps along the diagonal");
     const std::vector<double> moduli = bending.numbers(count, kNotNegative);
-    f.bend_u = moduli[0], f.bend_v = moduli[1], f.bend_diagonal = count == 3 ? moduli[2] : -1;
+    f.bend_u = moduli[0];
+    f.bend_v = moduli[1];
+    f.bend_diagonal = count == 3 ? moduli[2] : -1;
     f.bending_poisson = 0;
   } else if (!object.has("thickness")) {
     object.required("bending");

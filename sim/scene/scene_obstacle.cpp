@@ -69,7 +69,10 @@ void note_distance(const Obstacle& obstacle, const std::string& file, const Scen
     bounds.add(obstacle.mesh.positions[v]);
     const double distance =
         norm(convert<double>(obstacle.frames.front()[v]) - obstacle.mesh.positions[v]);
-    if (distance > farthest) farthest = distance, vertex = v;
+    if (distance > farthest) {
+      farthest = distance;
+      vertex = v;
+    }
   }
 
   // Caches are in single precision, and meshes are written with few digits.

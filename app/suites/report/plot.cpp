@@ -34,9 +34,15 @@ class Axis {
   }
   /// Ends the axis at round numbers. It starts at zero where that costs little room.
   void finish() {
-    if (low_ > high_) low_ = 0, high_ = 1;
+    if (low_ > high_) {
+      low_ = 0;
+      high_ = 1;
+    }
     if (!log_ && low_ > 0 && low_ < 0.5 * high_) low_ = 0;
-    if (high_ - low_ < 1e-12 * std::max(1.0, std::fabs(high_))) low_ -= 0.5, high_ += 0.5;
+    if (high_ - low_ < 1e-12 * std::max(1.0, std::fabs(high_))) {
+      low_ -= 0.5;
+      high_ += 0.5;
+    }
     step_ = log_ ? std::max(1.0, std::ceil((high_ - low_) / 6)) : nice((high_ - low_) / 5);
     low_ = step_ * std::floor(low_ / step_ + 1e-9);
     high_ = step_ * std::ceil(high_ / step_ - 1e-9);
