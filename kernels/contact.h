@@ -92,6 +92,72 @@ struct ContactMotion {
   bool solved;
 };
 
+/// Normal force that the present compression of a contact carries [N].
+ICLOTH_HD inline Real carried_force(const Contact& c, const ContactLaw& law) {
+  return law.stiffness * c.area * std::fmax(c.thickness - c.gap, Real(0));
+}
+
+/// The normal force from which friction follows [N]. Before the first solve it is what the present
+/// compression carries plus what stops the approach, since the predicted gap alone would
+/// overestimate it. The last two parameters are those of contact_term.
+ICLOTH_HD inline Real friction_load(const Contact& c, const ContactLaw& law,
+                                    const ContactMotion& motion, Real inverse_mass,
+                                    const ContactTerm& last) {
+  const Real normal = normal_force(c, law, motion.end);
+  if (motion.solved && last.active != 0) return normal;
+  const Real stop =
+      std::fmax(-dot(c.normal, motion.end), Real(0)) / (law.dt * law.dt * inverse_mass);
+  return std::fmin(normal, carried_force(c, law) + stop);
+}
+
+/// Whether a pair whose trial force exceeds its limit [N] comes to rest within the step all the
+/// same.
+ICLOTH_HD inline bool comes_to_rest(const Contact& c, const ContactLaw& law,
+                                    const ContactMotion& motion, Real inverse_mass,
+                                    const ContactTerm& last, Vec3r trial, Real limit) {
+  // It does when it is found to slide in one direction after it was taken to slide in the opposite
+  // one.
+  if (motion.solved) return dot(last.sliding, trial) < 0;
+
+  // Before a solve, a pair that stuck is expected to go on sticking, one that is under way to go on
+  // sliding, and any other to come to rest where its sliding force alone would reverse its expected
+  // motion.
+  if (c.stuck != 0) return true;
+  const Real k = law.stiffness * c.area, carried = carried_force(c, law);
+  const bool under_way = carried > 0 && k * norm(tangential(c, motion.free)) > c.friction * carried;
+  return !under_way && limit * law.dt * law.dt * inverse_mass > norm(tangential(c, motion.end));
+}
+
+/// Adds the tangential part to the impulse and to the stiffness h of a term.
+ICLOTH_HD inline void add_friction(const Contact& c, const ContactLaw& law,
+                                   const ContactMotion& motion, Real inverse_mass,
+                                   const ContactTerm& last, ContactTerm& t, Mat3r& h) {
+  const Vec3r n = c.normal;
+  const Real k = law.stiffness * c.area, kdt2 = law.dt * law.dt * k;
+
+  // Coulomb's projection starts from a trial force, that of a pair which sticks.
+  const Real limit = c.friction * friction_load(c, law, motion, inverse_mass, last);
+  const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
+  const Vec3r held = tangential(c, c.held), trial = held - k * end;
+  const Real length = norm(trial);
+
+  // A sticking pair is a spring of stiffness k in both tangential directions.
+  if (!(length > limit) || comes_to_rest(c, law, motion, inverse_mass, last, trial, limit)) {
+    t.impulse += law.dt * (held - k * start);
+    h += kdt2 * (Mat3r::identity(1) - outer(n, n));
+    return;
+  }
+
+  // A sliding pair pulls with the limit along its trial force; across that direction the stiffness
+  // is reduced by limit / length, as the derivative of the projection says.
+  const Vec3r d = (Real(1) / length) * trial;
+  t.sliding = d;
+  const Real turn = limit / length;  // of k: what is left of it across d
+  const Vec3r from = start - end;
+  t.impulse += law.dt * (limit * d - (turn * k) * (from - dot(d, from) * d));
+  h += (turn * kdt2) * (Mat3r::identity(1) - outer(n, n) - outer(d, d));
+}
+
 /// The term of one contact, linearised about motion.end: the normal part and, if `c.friction` > 0,
 /// the tangential one. inverse_mass is Σ w²/m of the free corners [1/kg]; `last` is the term that
 /// motion was solved with.
@@ -105,52 +171,11 @@ ICLOTH_HD inline ContactTerm contact_term(const Contact& c, const ContactLaw& la
   // Repulsion: N = k a (h − gap) is linear in Δv as it is. Its derivative dt² k a n nᵀ goes to the
   // left side.
   const Vec3r n = c.normal;
-  const Real k = law.stiffness * c.area, kdt2 = law.dt * law.dt * k;
+  const Real k = law.stiffness * c.area;
   const Real approach = dot(n, motion.free);
   t.impulse = (law.dt * k * (c.thickness - c.gap - approach)) * n;
-  Mat3r h = kdt2 * outer(n, n);
-  if (c.friction > 0) {
-    // Friction needs an estimate of the normal force. Before the first solve it is what the present
-    // compression carries plus what stops the approach, since the predicted gap alone would
-    // overestimate it.
-    const Real carried = k * std::fmax(c.thickness - c.gap, Real(0));
-    Real normal = normal_force(c, law, motion.end);
-    if (!motion.solved || last.active == 0) {
-      const Real stop = std::fmax(-dot(n, motion.end), Real(0)) / (law.dt * law.dt * inverse_mass);
-      normal = std::fmin(normal, carried + stop);
-    }
-
-    // Coulomb's projection starts from a trial force, that of a pair which sticks.
-    const Real limit = c.friction * normal;
-    const Vec3r start = tangential(c, motion.free), end = tangential(c, motion.end);
-    const Vec3r held = tangential(c, c.held), trial = held - k * end;
-    const Real length = norm(trial);
-
-    // A pair that is found to slide in one direction when it was taken to slide in the opposite one
-    // comes to rest within the step. Before a solve, a pair that stuck is expected to go on
-    // sticking, one that is under way to go on sliding, and any other to come to rest where its
-    // sliding force alone would reverse its expected motion.
-    const bool under_way = c.stuck == 0 && carried > 0 && k * norm(start) > c.friction * carried;
-    const bool turns =
-        motion.solved
-            ? dot(last.sliding, trial) < 0
-            : c.stuck != 0 || (!under_way && limit * law.dt * law.dt * inverse_mass > norm(end));
-    const bool slips = length > limit && !turns;
-    if (slips) {
-      // A sliding pair pulls with the limit along its trial force; across that direction the
-      // stiffness is reduced by limit / length, as the derivative of the projection says.
-      const Vec3r d = (Real(1) / length) * trial;
-      t.sliding = d;
-      const Real turn = limit / length;  // of k: what is left of it across d
-      const Vec3r from = start - end;
-      t.impulse += law.dt * (limit * d - (turn * k) * (from - dot(d, from) * d));
-      h += (turn * kdt2) * (Mat3r::identity(1) - outer(n, n) - outer(d, d));
-    } else {
-      // A sticking pair is a spring of stiffness k in both tangential directions.
-      t.impulse += law.dt * (held - k * start);
-      h += kdt2 * (Mat3r::identity(1) - outer(n, n));
-    }
-  }
+  Mat3r h = (law.dt * law.dt * k) * outer(n, n);
+  if (c.friction > 0) add_friction(c, law, motion, inverse_mass, last, t, h);
 
   // Only six of the nine entries differ, as H is symmetric.
   t.h = {{h.m[0], h.m[1], h.m[2], h.m[4], h.m[5], h.m[8]}};
