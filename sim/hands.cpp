@@ -80,9 +80,9 @@ std::int64_t Hands::advance(double dt, const Parameters& parameters,
   const double reach = parameters.grab.max_speed * dt;
   for (std::size_t k = 0; k < held_->size(); ++k) {
     HeldPatch& h = (*held_)[k];
-    const Vec3d rest = h.target - h.followed;
-    const double distance = norm(rest);
-    h.followed = distance > reach ? h.followed + (reach / distance) * rest : h.target;
+    const Vec3d lag = h.target - h.followed;
+    const double distance = norm(lag);
+    h.followed = distance > reach ? h.followed + (reach / distance) * lag : h.target;
     if (distance > reach) limits |= bit_of(Limit::hand_speed);
 
     // A pull beyond the largest force would only stretch the patch.

@@ -153,7 +153,7 @@ void Solver::find_contacts(SubstepContext& step) {
 }
 
 /// False when the candidate is not finite, or when a shorter substep would be much more accurate:
-/// half of it leaves a quarter of the strain that the linear solve does not see.
+/// half the length leaves a quarter of the strain that the linear solve does not see.
 bool Solver::check_candidate(StepReport& report, bool last_resort) {
   report.finite = all_finite(state_);
   if (!report.finite) return false;
