@@ -12,9 +12,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kSteepest = 0.495 * kPi;           // straight down would leave `right` undefined
 constexpr double kShortest = 1e-3, kLongest = 1e4;  // distance to the target [m]
 
-/// The tangent of half the vertical field of view.
-double tangent(double fov) { return std::tan(fov * kPi / 360); }
-
 }  // namespace
 
 Camera::Camera(const CameraPose& pose)
@@ -49,32 +46,7 @@ Vec3d Camera::up() const { return cross(right(), forward()); }
 
 Vec3d Camera::eye() const { return target_ - distance_ * forward(); }
 
-Matrix4 Camera::view() const { return look(eye(), right(), up(), -forward()); }
-
-Matrix4 Camera::projection(double aspect) const {
-  const double f = 1 / tangent(fov_);
-
-  // The planes are far enough from the target for any scene, and close enough together for the
-  // precision of depth.
-  const double near_plane = 0.02 * distance_, far_plane = 100 * distance_;
-  const double range = near_plane - far_plane;
-  return {f / aspect,
-          0,
-          0,
-          0,
-          0,
-          f,
-          0,
-          0,
-          0,
-          0,
-          (far_plane + near_plane) / range,
-          -1,
-          0,
-          0,
-          2 * far_plane * near_plane / range,
-          0};
-}
+double Camera::half_height() const { return std::tan(fov_ * kPi / 360); }
 
 void Camera::orbit(double dx, double dy, int height) {
   const double turn = kPi / std::max(1, height);
@@ -106,7 +78,7 @@ void Camera::set_pivot(Vec3d point) {
 void Camera::frame_box(Vec3d low, Vec3d high, double aspect) {
   // The distance is the farthest back that any corner of the box needs the eye to be, for the
   // picture's height and width.
-  const double vertical = tangent(fov_) * 0.92, horizontal = vertical * aspect;
+  const double vertical = half_height() * 0.92, horizontal = vertical * aspect;
   target_ = 0.5 * (low + high);
   double needed = kShortest;
   for (int corner = 0; corner < 8; ++corner) {
@@ -121,7 +93,7 @@ void Camera::frame_box(Vec3d low, Vec3d high, double aspect) {
 }
 
 Ray Camera::ray(double x, double y, int width, int height) const {
-  const double scale = 2 * tangent(fov_) / height;
+  const double scale = 2 * half_height() / height;
   const double across = (x - 0.5 * width) * scale, above = (0.5 * height - y) * scale;
   return {eye(), normalized(forward() + across * right() + above * up())};
 }
@@ -134,7 +106,7 @@ Projected Camera::project(Vec3d point, int width, int height) const {
 }
 
 double Camera::pixel_size(double depth, int height) const {
-  return 2 * depth * tangent(fov_) / std::max(1, height);
+  return 2 * depth * half_height() / std::max(1, height);
 }
 
 }  // namespace icloth

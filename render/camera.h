@@ -1,7 +1,6 @@
-// A camera that orbits a target; Y is up.
+// A camera that orbits a target; Y is up. Its matrices are in render/view_matrices.h.
 #pragma once
 
-#include "render/matrix.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {
@@ -35,10 +34,8 @@ class Camera {
   Vec3d up() const;
   double distance() const { return distance_; }
   double fov() const { return fov_; }  ///< vertical [degrees]
-
-  Matrix4 view() const;
-  /// OpenGL clip space; near and far planes follow the distance to the target.
-  Matrix4 projection(double aspect) const;
+  /// Half the height of the picture at depth 1: the tangent of half the field of view.
+  double half_height() const;
 
   /// Turns around the target, for a drag of the pointer in pixels on a picture of `height` pixels.
   /// A drag over the whole height is half a turn.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "render/view_matrices.h"
+
 namespace icloth {
 
 namespace {
@@ -84,11 +86,16 @@ LightSample light_sample(int i, int n) {
   return sample;
 }
 
-Matrix4 light_matrix(const Bounds& bounds, Vec3d direction) {
+Eigen::Matrix4d light_matrix(const Bounds& bounds, Vec3d direction) {
   Vec3d right, up;
   axes(direction, right, up);
   const Vec3d eye = bounds.centre + bounds.radius * direction;
-  return orthographic(1.02 * bounds.radius, 0, 2 * bounds.radius) * look(eye, right, up, direction);
+
+  // Parallel rays: x and y go from −half to half, and the depth from the eye to the far side.
+  const double half = 1.02 * bounds.radius;
+  const Eigen::Affine3d orthographic =
+      Eigen::Translation3d(0, 0, -1) * Eigen::Scaling(1 / half, 1 / half, -1 / bounds.radius);
+  return (orthographic * look(eye, right, up, direction)).matrix();
 }
 
 }  // namespace icloth

@@ -1,9 +1,10 @@
 // The directions that light comes from, without any OpenGL.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 
-#include "render/matrix.h"
+#include "kernels/vec.h"
 
 namespace icloth {
 
@@ -29,6 +30,6 @@ LightSample light_sample(int i, int n);
 
 /// The matrix from the world to the clip space of a light far away in `direction` that sees the
 /// bounds.
-Matrix4 light_matrix(const Bounds& bounds, Vec3d direction);
+Eigen::Matrix4d light_matrix(const Bounds& bounds, Vec3d direction);
 
 }  // namespace icloth

@@ -105,11 +105,10 @@ void MeshPass::draw(bool draft) const {
   }
 }
 
-void MeshPass::draw_depth(const Matrix4& matrix) const {
-  float elements[16];
-  for (std::size_t k = 0; k < 16; ++k) elements[k] = static_cast<float>(matrix[k]);
+void MeshPass::draw_depth(const Eigen::Matrix4d& matrix) const {
+  const Eigen::Matrix4f elements = matrix.cast<float>();
   depth_.use();
-  depth_.set_matrix("light_matrix", elements);
+  depth_.set_matrix("light_matrix", elements.data());
   glBindVertexArray(vertex_array_);
   glDrawElements(GL_TRIANGLES, 3 * world_.faces, GL_UNSIGNED_INT, nullptr);
 }

@@ -1,7 +1,8 @@
 // Drawing the objects of a world, into the picture and into shadow maps.
 #pragma once
 
-#include "render/matrix.h"
+#include <Eigen/Core>
+
 #include "render/shader_program.h"
 #include "render/vertex_buffers.h"
 #include "sim/scene/world.h"
@@ -21,7 +22,7 @@ class MeshPass {
   void draw(bool draft) const;
   /// Draws their depth as the light sees it. `matrix` leads from the world to the clip space of the
   /// light.
-  void draw_depth(const Matrix4& matrix) const;
+  void draw_depth(const Eigen::Matrix4d& matrix) const;
 
  private:
   void upload_constants();

@@ -3,8 +3,6 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "render/gl_context.h"
@@ -13,6 +11,7 @@
 #include "render/mesh_pass.h"
 #include "render/overlay.h"
 #include "render/shader_program.h"
+#include "render/view_matrices.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 #include "sim/scene/parameters.h"
@@ -52,8 +51,8 @@ struct StudioBlock {
 };
 
 /// These write a matrix or a vector as the uniform block holds it.
-void store(float (&out)[16], const Matrix4& m) {
-  std::transform(m.begin(), m.end(), out, [](double v) { return static_cast<float>(v); });
+void store(float (&out)[16], const Eigen::Matrix4d& m) {
+  Eigen::Map<Eigen::Matrix4f>{out} = m.cast<float>();
 }
 
 void store(float (&out)[4], Vec3d v, double w = 0) {
@@ -61,8 +60,8 @@ void store(float (&out)[4], Vec3d v, double w = 0) {
   std::transform(values, values + 4, out, [](double e) { return static_cast<float>(e); });
 }
 
-/// The matrix from clip space (−1 … 1) to texture space (0 … 1).
-constexpr Matrix4 kToTexture{0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5, 0.5, 1};
+/// The map from clip space (−1 … 1) to texture space (0 … 1).
+Eigen::Affine3d to_texture() { return Eigen::Translation3d(0.5, 0.5, 0.5) * Eigen::Scaling(0.5); }
 
 }  // namespace
 
@@ -79,7 +78,7 @@ struct Renderer::Parts {
 
   void upload(const Frame& frame, const Camera& camera, int width, int height);
   void light(const Frame& frame, const Camera& camera, const LightSample& sample);
-  void draw_depth(Target& map, const Matrix4& matrix) const;
+  void draw_depth(Target& map, const Eigen::Matrix4d& matrix) const;
   void draw_sample(bool floor) const;
   void draw_ground() const;
   void draw_overlay() const;
@@ -162,16 +161,19 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   const bool dome = settings.samples > 1;
   const double width = sample.width(), height = sample.height(), aspect = width / height;
   const double texel = 2.04 * bounds.radius / settings.shadow_size;
-  const Matrix4 key_clip = light_matrix(bounds, light.key);
-  const Matrix4 dome_clip = light_matrix(bounds, light.dome);
-  const Matrix4 projection =
-      shifted(camera.projection(aspect), 2 * light.pixel_x / width, 2 * light.pixel_y / height);
-  const double up = std::tan(camera.fov() * std::numbers::pi / 360);
+  const Eigen::Matrix4d key_clip = light_matrix(bounds, light.key);
+  const Eigen::Matrix4d dome_clip = light_matrix(bounds, light.dome);
+  const double up = camera.half_height();
+
+  // Each sample looks through another point of its pixel, in units of half the picture.
+  Eigen::Matrix4d projection = projection_matrix(camera, aspect);
+  projection.row(0) += 2 * light.pixel_x / width * projection.row(3);
+  projection.row(1) += 2 * light.pixel_y / height * projection.row(3);
 
   StudioBlock block{};
-  store(block.view_projection, projection * camera.view());
-  store(block.key_matrix, kToTexture * key_clip);
-  store(block.dome_matrix, kToTexture * dome_clip);
+  store(block.view_projection, projection * view_matrix(camera).matrix());
+  store(block.key_matrix, to_texture() * key_clip);
+  store(block.dome_matrix, to_texture() * dome_clip);
   store(block.eye, camera.eye());
   store(block.key, light.key, texel);
   store(block.dome, light.dome, dome ? texel : 0);
@@ -195,7 +197,7 @@ void Renderer::Parts::light(const Frame& frame, const Camera& camera, const Ligh
   (dome ? dome_map : key_map).bind_texture(1);
 }
 
-void Renderer::Parts::draw_depth(Target& map, const Matrix4& matrix) const {
+void Renderer::Parts::draw_depth(Target& map, const Eigen::Matrix4d& matrix) const {
   map.bind();
   glEnable(GL_DEPTH_TEST);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/scene/rotation.h"
+#include "sim/scene/transforms.h"
 
 namespace icloth {
 namespace {
@@ -50,9 +50,10 @@ void Obstacle::pose(double time, std::vector<Vec3d>& out) const {
   const Interval at = find_interval(motion, time);
   const Keyframe &a = motion[at.first], &b = motion[at.second];
   const double s = at.fraction;
-  const Mat3<double> rotation = rotation_matrix((1 - s) * a.rotation + s * b.rotation);
+  const Eigen::Matrix3d rotation =
+      angle_axis((1 - s) * a.rotation + s * b.rotation).toRotationMatrix();
   const Vec3d translation = (1 - s) * a.translation + s * b.translation;
-  for (Vec3d& p : out) p = rotation * p + translation;
+  for (Vec3d& p : out) p = from_eigen(rotation * to_eigen(p)) + translation;
 }
 
 }  // namespace icloth

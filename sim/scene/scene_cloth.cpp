@@ -9,6 +9,7 @@
 #include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/scene_json.h"
+#include "sim/scene/transforms.h"
 
 namespace icloth {
 namespace {

@@ -9,16 +9,7 @@
 
 namespace icloth {
 
-/// Rigid motion and size of an object: x → rotation · (scale ∘ x) + translation.
-struct Placement {
-  Vec3d scale{1, 1, 1};
-  Mat3<double> rotation = Mat3<double>::identity();
-  Vec3d translation;
-
-  Vec3d operator()(Vec3d x) const {
-    return rotation * Vec3d{scale.x * x.x, scale.y * x.y, scale.z * x.z} + translation;
-  }
-};
+struct Placement;  // sim/scene/transforms.h, which reads Eigen
 
 /// A cloth of the scene and, for a grid, the names of its vertices.
 struct LoadedCloth {

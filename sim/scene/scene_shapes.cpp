@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/scene/rotation.h"
 #include "sim/scene/scene_json.h"
+#include "sim/scene/transforms.h"
 
 namespace icloth {
 namespace {
@@ -14,17 +14,18 @@ constexpr Index kDefaultTriangles = 2000;
 constexpr Index kMaxRoundTriangles = 1'000'000;
 const NumberRange kSize{1e-6, 1e6};
 
-/// Rotation vector of a rotation matrix; near half a turn the axis comes from the symmetric part.
-Vec3d rotation_vector(const Mat3<double>& r) {
-  const Vec3d twice_axis{r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)};
-  const double sine = norm(twice_axis) / 2, cosine = (r(0, 0) + r(1, 1) + r(2, 2) - 1) / 2;
-  const double angle = std::atan2(sine, cosine);
-  if (sine > 1e-6) return angle * normalized(twice_axis);
-  if (cosine > 0) return 0.5 * twice_axis;
-  int k = 0;
-  for (int i = 1; i < 3; ++i)
-    if (r(i, i) > r(k, k)) k = i;
-  return angle * normalized(Vec3d{r(0, k) + (k == 0), r(1, k) + (k == 1), r(2, k) + (k == 2)});
+/// Rotation vector of a turn, which is at most half a circle long.
+Vec3d rotation_vector(const Eigen::Quaterniond& turn) {
+  const Eigen::AngleAxisd shortest(turn);
+  const Vec3d rotation = shortest.angle() * from_eigen(shortest.axis());
+
+  // Half a turn goes either way. Rounding must not choose which, since keyframes are interpolated:
+  // the largest component is positive.
+  if (shortest.angle() < std::numbers::pi - 1e-6) return rotation;
+  Eigen::Index largest = 0;
+  shortest.axis().cwiseAbs().maxCoeff(&largest);
+  if (shortest.axis()[largest] > 0) return rotation;
+  return (shortest.angle() - 2 * std::numbers::pi) * from_eigen(shortest.axis());
 }
 
 [[noreturn]] void refuse_cells(const JsonValue& value, Index most_triangles) {
@@ -139,30 +140,23 @@ Vec3d parse_rotation(JsonValue value) {
   }
 
   const Vec3d degrees = value.vector({-1e6, 1e6});
-  const auto about = [](Vec3d axis) { return rotation_matrix(kDegree * axis); };
-
   // A turn about one axis keeps its full turns: keyframes may count beyond 360 degrees.
   const int axes = (degrees.x != 0) + (degrees.y != 0) + (degrees.z != 0);
   if (axes <= 1) return kDegree * degrees;
 
-  // Turns about several axes are combined, x first, as a product of matrices.
-  const Mat3<double> x = about({degrees.x, 0, 0}), y = about({0, degrees.y, 0}),
-                     z = about({0, 0, degrees.z});
-  Mat3<double> result;
-  for (int c = 0; c < 3; ++c) {
-    const Vec3d column = z * (y * Vec3d{x(0, c), x(1, c), x(2, c)});
-    result(0, c) = column.x;
-    result(1, c) = column.y;
-    result(2, c) = column.z;
-  }
-  return rotation_vector(result);
+  // Turns about several axes are combined, x first.
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  return rotation_vector(AngleAxisd(kDegree * degrees.z, Vector3d::UnitZ()) *
+                         AngleAxisd(kDegree * degrees.y, Vector3d::UnitY()) *
+                         AngleAxisd(kDegree * degrees.x, Vector3d::UnitX()));
 }
 
 Placement parse_transform(JsonValue value) {
   JsonObject object(value);
   Placement place;
-  place.translation = object.vector("translate", {});
-  if (object.has("rotate")) place.rotation = rotation_matrix(parse_rotation(object["rotate"]));
+  place.translation = to_eigen(object.vector("translate", {}));
+  if (object.has("rotate"))
+    place.rotation = angle_axis(parse_rotation(object["rotate"])).toRotationMatrix();
 
   // One number scales all axes alike, and three numbers scale each axis by itself.
   if (object.has("scale")) {

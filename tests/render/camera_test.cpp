@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/view_matrices.h"
+#include "sim/scene/transforms.h"
+
 namespace icloth {
 namespace {
 
@@ -21,11 +24,9 @@ void expect_near(Vec3d a, Vec3d b, double tolerance) {
 
 /// Normalised device coordinates by the matrices that the renderer uses.
 Vec3d through_matrices(const Camera& camera, Vec3d p) {
-  const Matrix4 m = camera.projection(kAspect) * camera.view();
-  const auto row = [&](std::size_t r) {
-    return m[r] * p.x + m[4 + r] * p.y + m[8 + r] * p.z + m[12 + r];
-  };
-  return {row(0) / row(3), row(1) / row(3), row(2) / row(3)};
+  const Eigen::Vector4d clip =
+      projection_matrix(camera, kAspect) * (view_matrix(camera) * to_eigen(p)).homogeneous();
+  return from_eigen(clip.hnormalized());
 }
 
 TEST(Camera, KeepsThePoseItIsGiven) {

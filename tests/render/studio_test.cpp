@@ -53,13 +53,12 @@ TEST(Lights, MatrixShowsTheWholeSphere) {
   const Bounds bounds{{0.3, 1.2, -0.4}, 0.7};
   for (int i = 0; i < 16; ++i) {
     const Vec3d direction = light_sample(i, 16).dome;
-    const Matrix4 m = light_matrix(bounds, direction);
+    const Eigen::Matrix4d m = light_matrix(bounds, direction);
     for (int k = 0; k < 16; ++k) {
       const Vec3d p = bounds.centre + bounds.radius * light_sample(k, 16).dome;
-      for (std::size_t row = 0; row < 3; ++row) {
-        const double clip = m[row] * p.x + m[4 + row] * p.y + m[8 + row] * p.z + m[12 + row];
-        EXPECT_LE(std::fabs(clip), 1 + 1e-9);
-      }
+      const Eigen::Vector4d clip = m * Eigen::Vector4d(p.x, p.y, p.z, 1);
+      EXPECT_EQ(clip.w(), 1);
+      EXPECT_LE(clip.head<3>().cwiseAbs().maxCoeff(), 1 + 1e-9);
     }
   }
 }

@@ -6,7 +6,7 @@
 #include "app/suites/stability/case_run.h"
 #include "app/suites/stability/cases.h"
 #include "app/suites/stability/scenes.h"
-#include "sim/scene/rotation.h"
+#include "sim/scene/transforms.h"
 
 namespace icloth::stability {
 namespace {
@@ -103,9 +103,9 @@ void box_corner(CaseRun& run) {
   TriangleMesh box = make_box({0.2, 0.2, 0.2}, 0.2);
 
   // The space diagonal points up.
-  const Mat3<double> turn =
-      rotation_matrix(std::acos(1 / std::numbers::sqrt3) * normalized(Vec3d{-1, 0, 1}));
-  for (Vec3d& p : box.positions) p = turn * p;
+  const auto turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitY());
+  for (Vec3d& p : box.positions) p = from_eigen(turn * to_eigen(p));
 
   scene->obstacles = {make_body(box, {})};
   scene->cloths = {lying_sheet(0.4, run.brief() ? 200 : 800, {0.013, 0.2, -0.006})};

@@ -5,8 +5,8 @@
 #include "app/suites/stability/case_run.h"
 #include "app/suites/stability/cases.h"
 #include "app/suites/stability/scenes.h"
-#include "sim/scene/rotation.h"
 #include "sim/scene/scene_io.h"
+#include "sim/scene/transforms.h"
 
 namespace icloth::stability {
 namespace {
@@ -20,12 +20,12 @@ void run_coplanar(CaseRun& run, Vec3d rotation, bool proximity) {
   scene->cloths = {lying_sheet(0.2, 100, {}), lying_sheet(0.2, 100, {0.206, 0, 0.011})};
 
   // The plane is turned, since planes along the axes are special to boxes.
-  const Mat3<double> turn = rotation_matrix(rotation);
+  const Eigen::Matrix3d turn = angle_axis(rotation).toRotationMatrix();
   for (Cloth& cloth : scene->cloths)
-    for (Vec3d& p : cloth.mesh.positions) p = turn * p;
+    for (Vec3d& p : cloth.mesh.positions) p = from_eigen(turn * to_eigen(p));
 
   run.start(scene);
-  run.throw_cloth(1, turn * Vec3d{-1, 0, 0});
+  run.throw_cloth(1, from_eigen(-turn.col(0)));
   run.run_for(run.brief() ? 0.1 : 0.3);
 }
 
