@@ -77,7 +77,7 @@ RepairMesh::RepairMesh(const Scene& scene) {
     obstacle.pose(0.0, pose);
     add(pose, obstacle.mesh.faces, -1);
   }
-  start = x;
+  start = base = x;
 
   // Turning a face changes the neighbourhoods only by the order of its edges.
   make_edges();

@@ -27,6 +27,7 @@ struct IndexLists {
 struct RepairMesh {
   std::vector<Vec3d> x;            ///< positions [m] (V), rounded to single precision
   std::vector<Vec3d> start;        ///< x before the repair [m] (V)
+  std::vector<Vec3d> base;         ///< x from which the present moves count [m] (V)
   std::vector<std::uint8_t> free;  ///< 1 for vertices that may be moved (V)
   std::vector<Index> part;         ///< number of the connected part that a vertex belongs to (V)
   std::vector<Triangle> faces;     ///< (F)

@@ -1,353 +1,115 @@
 #include "sim/scene/repair_moves.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "kernels/distance.h"
-#include "sim/scene/box_tree.h"
+#include <limits>
 
 namespace icloth {
 namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-constexpr int kMostSweeps = 300;
-constexpr int kMostRounds = 40;  ///< of evening out the moves
-constexpr double kSlack = 1.5;   ///< an edge under a ridge is deeper than its closest point tells
-
-/// Marks: for each element the contours that it belongs to.
-using Marks = std::vector<std::vector<Index>>;
-
-bool common(const std::vector<Index>& a, const std::vector<Index>& b) {
-  return std::ranges::any_of(a, [&](Index i) { return std::ranges::find(b, i) != b.end(); });
-}
-
-void mark(std::vector<Index>& marks, Index contour) {
-  if (marks.empty() || marks.back() != contour) marks.push_back(contour);
-}
-
-class Collector {
- public:
-  Collector(const RepairMesh& mesh, std::span<const SidedContour> contours, double offset,
-            bool parted)
-      : mesh_(mesh),
-        contours_(contours),
-        offset_(offset),
-        parted_(parted),
-        own_vertices_(mesh.x.size()),
-        own_edges_(mesh.edges.size()),
-        other_faces_(mesh.faces.size()),
-        other_edges_(mesh.edges.size()),
-        moving_(mesh.x.size(), 0) {}
-
-  std::vector<GapConstraint> run() {
-    // The parts of the sheets near each contour are found first, since edges need those of both
-    // sheets.
-    for (std::size_t c = 0; c < contours_.size(); ++c)
-      if (contours_[c].side.sign != 0) add_vertices(c);
-    for (std::size_t c = 0; c < contours_.size(); ++c)
-      if (contours_[c].side.sign != 0) add_edges(c);
-    add_surroundings();
-    return std::move(constraints_);
-  }
-
- private:
-  /// Faces around the wrong vertices and the contour, and the vertices of those.
-  struct Region {
-    std::vector<std::pair<Index, Index>> vertices;  ///< each with a face of the other sheet near it
-    std::vector<Index> edges;
-  };
-
-  void add_vertices(std::size_t c) {
-    const Contour& contour = contours_[c].contour;
-    const Side& side = contours_[c].side;
-    const auto number = static_cast<Index>(c);
-
-    // The region on this sheet has the contour, the wrong vertices, and one ring of faces around
-    // them.
-    std::vector<std::pair<Index, Index>> seeds;
-    for (const Contour::Segment& s : contour.segments)
-      for (const Index v : mesh_.faces[at(s.own)]) seeds.emplace_back(v, s.other);
-    for (const WrongVertex& w : side.wrong) seeds.emplace_back(w.vertex, w.face);
-    Region& region = regions_.emplace_back();
-    region_of_.push_back(c);
-    for (const auto& [seed, near] : seeds)
-      for (const Index f : mesh_.vertex_faces[seed]) {
-        for (const Index v : mesh_.faces[at(f)])
-          if (own_vertices_[at(v)].empty() || own_vertices_[at(v)].back() != number) {
-            own_vertices_[at(v)].push_back(number);
-            region.vertices.emplace_back(v, near);
-          }
-        for (const Index e : mesh_.face_edges[at(f)])
-          if (own_edges_[at(e)].empty() || own_edges_[at(e)].back() != number) {
-            own_edges_[at(e)].push_back(number);
-            region.edges.push_back(e);
-          }
-      }
-
-    // Each vertex goes by its height over the closest point of the other sheet.
-    for (const Contour::Segment& s : contour.segments) mark_other(s.other, number);
-    for (const auto& [v, near] : region.vertices) {
-      const SurfacePoint p = walk_to_closest(mesh_, mesh_.position(v), near);
-      mark_other(p.face, number);
-      moving_[at(v)] = 1;
-      const double gap = side.sign * p.height;
-      if (p.beyond || !in_reach(gap, side.depth)) continue;
-      const Triangle& t = mesh_.faces[at(p.face)];
-      if (std::ranges::find(t, v) != t.end()) continue;
-      add({{v, t[0], t[1], t[2]},
-           {1, -p.w[0], -p.w[1], -p.w[2]},
-           double(side.sign) * p.normal,
-           offset_});
-    }
-  }
-
-  /// A face of the other sheet and those around it.
-  void mark_other(Index face, Index contour) {
-    for (const Index v : mesh_.faces[at(face)]) {
-      moving_[at(v)] = 1;
-      for (const Index f : mesh_.vertex_faces[v]) {
-        mark(other_faces_[at(f)], contour);
-        for (const Index e : mesh_.face_edges[at(f)]) mark(other_edges_[at(e)], contour);
-      }
-    }
-  }
-
-  bool in_reach(double gap, double depth) const {
-    return gap >= -kSlack * depth - 0.1 * offset_ && gap < depth + 2 * offset_;
-  }
-
-  void add_edges(std::size_t c) {
-    const SidedContour& own = contours_[c];
-    const SidedContour& twin = contours_[own.contour.twin];
-    if (twin.side.sign != 0 && own.contour.twin < c) return;  // done from there
-
-    // A tree of the edges of the other sheet finds those that are near.
-    std::vector<Index> others;
-    std::vector<Box> boxes;
-    for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
-      const bool near =
-          std::ranges::find(other_edges_[e], static_cast<Index>(c)) != other_edges_[e].end();
-      if (!near) continue;
-      others.push_back(static_cast<Index>(e));
-      boxes.push_back(edge_box(static_cast<Index>(e)));
-    }
-    const BoxTree tree(boxes);
-    const auto region = std::ranges::find(region_of_, c) - region_of_.begin();
-    const double depth = std::max(own.side.depth, twin.side.sign != 0 ? twin.side.depth : 0.0);
-
-    // An edge has to be on that side of the other edge on which its sheet has to be.
-    for (const Index e : regions_[static_cast<std::size_t>(region)].edges)
-      tree.visit(edge_box(e).grown(kSlack * depth + 2 * offset_), [&](Index i) {
-        add_crossing_edges(e, others[at(i)], own.side.sign, twin.side.sign, depth);
-      });
-  }
-
-  /// Edge e of a sheet that belongs on the side `sign` of edge f; where `twin_sign` is not 0, f
-  /// belongs on that side of e.
-  void add_crossing_edges(Index e, Index f, int sign, int twin_sign, double depth) {
-    const auto [a, b] = mesh_.edges[at(e)];
-    const auto [c, d] = mesh_.edges[at(f)];
-    if (a == c || a == d || b == c || b == d) return;
-
-    // The edges have to pass each other within both of them.
-    const Vec3d u = mesh_.position(b) - mesh_.position(a);
-    const Vec3d v = mesh_.position(d) - mesh_.position(c);
-    const Vec3d from = mesh_.position(c) - mesh_.position(a), n = cross(u, v);
-    const double nn = norm2(n);
-    if (!(nn > 1e-6 * norm2(u) * norm2(v))) return;
-    const double s = dot(cross(from, v), n) / nn, r = dot(cross(from, u), n) / nn;
-    if (!(s > 0 && s < 1 && r > 0 && r < 1)) return;
-
-    // The common normal points from f to where e has to be.
-    Vec3d normal = normalized(n);
-    if (dot(normal, double(sign) * mesh_.edge_normal(f)) < 0) normal = -normal;
-    if (!in_reach(-dot(normal, from), depth) || !in_cone(f, double(sign) * normal)) return;
-    if (twin_sign != 0 && !in_cone(e, double(-twin_sign) * normal)) return;
-    add({{a, b, c, d}, {1 - s, s, r - 1, -r}, normal, offset_});
-  }
-
-  /// Whether a direction lies between the normals of the faces of an edge, or close to that: only
-  /// there another edge can lie on this one.
-  bool in_cone(Index edge, Vec3d direction) const {
-    constexpr double slack = 0.44, border = 1.13, most = 1.48;  // radians
-    const Vec3d middle = normalized(mesh_.edge_normal(edge));
-    const auto faces = mesh_.edge_faces[edge];
-    double half = faces.size() < 2 ? border : 0;
-    for (const Index f : faces)
-      half = std::max(half, std::acos(std::clamp(dot(middle, mesh_.normal(f)), -1.0, 1.0)));
-    return dot(direction, middle) >= std::cos(std::min(half + slack, most));
-  }
-
-  /// Everything else close to what moves stays on its side.
-  void add_surroundings() {
-    double reach = 0;
-    for (const SidedContour& c : contours_)
-      if (c.side.sign != 0) reach = std::max(reach, c.side.depth);
-    reach = 2 * reach + 3 * offset_;
-
-    // The vertices that may move have one ring more than the regions.
-    std::vector<std::uint8_t> moving = moving_;
-    for (const Triangle& t : mesh_.faces)
-      if (std::ranges::any_of(t, [&](Index v) { return moving_[at(v)] != 0; }))
-        for (const Index v : t) moving[at(v)] = 1;
-
-    // A pair is looked for from its moving element, or from the first one of two.
-    std::vector<Box> vertex_boxes, edge_boxes, face_boxes;
-    for (const Vec3d& p : mesh_.x) vertex_boxes.push_back({p, p});
-    for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
-      edge_boxes.push_back(edge_box(static_cast<Index>(e)));
-    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
-      face_boxes.push_back(Box::empty());
-      for (const Vec3d& p : mesh_.corners(static_cast<Index>(f))) face_boxes.back().add(p);
-    }
-    const BoxTree vertices(vertex_boxes), edges(edge_boxes), faces(face_boxes);
-    const auto moves = [&](const auto& element) {
-      return std::ranges::any_of(element, [&](Index v) { return moving[at(v)] != 0; });
-    };
-
-    // Vertices that move are held against all faces, and other vertices only against faces that
-    // move.
-    for (std::size_t v = 0; v < mesh_.x.size(); ++v)
-      if (moving[v])
-        faces.visit(vertex_boxes[v].grown(reach),
-                    [&](Index f) { keep_vertex(static_cast<Index>(v), f, reach); });
-    for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
-      if (moves(mesh_.faces[f]))
-        vertices.visit(face_boxes[f].grown(reach), [&](Index v) {
-          if (!moving[at(v)]) keep_vertex(v, static_cast<Index>(f), reach);
-        });
-    for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
-      if (moves(mesh_.edges[e]))
-        edges.visit(edge_boxes[e].grown(reach), [&](Index f) {
-          if (at(f) < e || !moves(mesh_.edges[at(f)])) keep_edges(static_cast<Index>(e), f, reach);
-        });
-  }
-
-  /// A vertex on its side of a face.
-  void keep_vertex(Index v, Index face, double reach) {
-    const Triangle& t = mesh_.faces[at(face)];
-    const bool crossed = common(own_vertices_[at(v)], other_faces_[at(face)]);
-    if (std::ranges::find(t, v) != t.end() || (crossed && !parted_)) return;
-    const auto closest = [&](const std::vector<Vec3d>& x) {
-      return closest_point_triangle(x[at(v)], x[at(t[0])], x[at(t[1])], x[at(t[2])]);
-    };
-    const TrianglePoint<double> p = closest(mesh_.x);
-    if (!(p.distance2 < reach * reach)) return;
-    keep({{v, t[0], t[1], t[2]}, {1, -p.w[0], -p.w[1], -p.w[2]}, {}, 0},
-         room(v, t[0], closest(mesh_.start).distance2));
-  }
-
-  /// An edge on its side of another one.
-  void keep_edges(Index e, Index f, double reach) {
-    const auto [a, b] = mesh_.edges[at(e)];
-    const auto [c, d] = mesh_.edges[at(f)];
-    if (a == c || a == d || b == c || b == d) return;
-    const bool crossed = common(own_edges_[at(e)], other_edges_[at(f)]) ||
-                         common(own_edges_[at(f)], other_edges_[at(e)]);
-    if (crossed && !parted_) return;
-    const auto closest = [&, v = std::array{a, b, c, d}](const std::vector<Vec3d>& x) {
-      return closest_points_segments(x[at(v[0])], x[at(v[1])], x[at(v[2])], x[at(v[3])]);
-    };
-    const SegmentPoints<double> p = closest(mesh_.x);
-    if (!(p.distance2 < reach * reach)) return;
-    keep({{a, b, c, d}, {1 - p.s, p.s, p.t - 1, -p.t}, {}, 0},
-         room(a, c, closest(mesh_.start).distance2));
-  }
-
-  /// Gap that a pair without a contour needs: between parts the offset, once nothing crosses any
-  /// more; else, and in one sheet, no more than at the start.
-  double room(Index v, Index w, double start_distance2) const {
-    if (parted_ && mesh_.part[at(v)] != mesh_.part[at(w)]) return offset_;
-    return std::min(offset_, std::sqrt(start_distance2));
-  }
-
-  void keep(GapConstraint constraint, double target) {
-    Vec3d gap;
-    for (std::size_t k = 0; k < 4; ++k) gap += constraint.w[k] * mesh_.position(constraint.v[k]);
-    if (!(norm2(gap) > 1e-18)) return;  // in touch: no side is known
-    constraint.n = normalized(gap);
-    constraint.target = target;
-    add(constraint);
-  }
-
-  void add(const GapConstraint& constraint) {
-    const auto moves = [&](std::size_t k) {
-      return constraint.w[k] != 0 && mesh_.is_free(constraint.v[k]);
-    };
-    if (moves(0) || moves(1) || moves(2) || moves(3)) constraints_.push_back(constraint);
-  }
-
-  Box edge_box(Index e) const {
-    Box box = Box::empty();
-    for (const Index v : mesh_.edges[at(e)]) box.add(mesh_.position(v));
-    return box;
-  }
-
-  const RepairMesh& mesh_;
-  std::span<const SidedContour> contours_;
-  double offset_;
-  bool parted_;
-  Marks own_vertices_, own_edges_, other_faces_, other_edges_;
-  std::vector<std::uint8_t> moving_;
-  std::vector<Region> regions_;
-  std::vector<std::size_t> region_of_;  ///< contour of each region
-  std::vector<GapConstraint> constraints_;
-};
-
+constexpr int kMostSweeps = 20;          ///< over all constraints
+constexpr int kInnerSweeps = 40;         ///< over those that act, after each of them
+constexpr int kStall = 3;                ///< sweeps without a smaller correction
+constexpr double kOverRelaxation = 1.3;  ///< fewest sweeps in trials; below 2 it converges
+constexpr int kMostRounds = 40;          ///< of evening out the moves
+constexpr int kPatience = 4;             ///< of them that do not help
 /// The motion of least Σ |move|² / ease that opens every gap by what it misses. Hildreth's method:
 /// one constraint after the other, with multipliers that never pull.
-std::vector<Vec3d> smallest_moves(std::span<const GapConstraint> constraints,
-                                  std::span<const double> missing, std::span<const double> ease,
-                                  double tolerance) {
-  // The response is how much a unit of multiplier opens the gap.
-  std::vector<Vec3d> move(ease.size());
-  std::vector<double> multiplier(constraints.size(), 0), response(constraints.size(), 0);
-  for (std::size_t i = 0; i < constraints.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k)
-      response[i] += constraints[i].w[k] * constraints[i].w[k] * ease[at(constraints[i].v[k])];
+class SmallestMoves {
+ public:
+  SmallestMoves(std::span<const GapConstraint> constraints, std::span<const double> missing)
+      : constraints_(constraints),
+        missing_(missing),
+        multiplier_(constraints.size(), 0),
+        response_(constraints.size(), 0) {}
 
-  double worst = 2 * tolerance;
-  for (int sweep = 0; sweep < kMostSweeps && worst > tolerance; ++sweep) {
-    worst = 0;
-    for (std::size_t i = 0; i < constraints.size(); ++i) {
-      const GapConstraint& c = constraints[i];
-      double opened = 0;
-      for (std::size_t k = 0; k < 4; ++k) opened += c.w[k] * dot(c.n, move[at(c.v[k])]);
-      const double step = std::max((missing[i] - opened) / response[i], -multiplier[i]);
-      if (step == 0) continue;
-      worst = std::max(worst, std::fabs(step) * response[i]);
-      multiplier[i] += step;
-      for (std::size_t k = 0; k < 4; ++k)
-        move[at(c.v[k])] += (step * c.w[k] * ease[at(c.v[k])]) * c.n;
+  /// Goes on from the multipliers of the call before. Returns the largest correction of the last
+  /// sweep [m]: above `tolerance` the constraints cannot all hold, or not yet.
+  double solve(std::span<const double> ease, double tolerance, std::int64_t& work) {
+    prepare(ease);
+
+    // Most constraints never act. Between two sweeps over all of them come some over those that do.
+    double worst = 2 * tolerance, least = std::numeric_limits<double>::infinity();
+    int waited = 0;
+    for (int sweep = 0; sweep < kMostSweeps && worst > tolerance && work > 0; ++sweep) {
+      if (waited > kStall) break;
+      worst = 0;
+      acting_.clear();
+      for (std::size_t i = 0; i < constraints_.size(); ++i) {
+        worst = std::max(worst, correct(i, ease));
+        if (multiplier_[i] > 0) acting_.push_back(i);
+      }
+      double still = worst;
+      int inner = 0;
+      for (; inner < kInnerSweeps && still > tolerance; ++inner) {
+        still = 0;
+        for (const std::size_t i : acting_) still = std::max(still, correct(i, ease));
+      }
+      waited = worst < 0.95 * least ? 0 : waited + 1;
+      least = std::min(least, worst);
+      work -= static_cast<std::int64_t>(constraints_.size()) +
+              inner * static_cast<std::int64_t>(acting_.size());
+    }
+    return worst;
+  }
+
+  const std::vector<Vec3d>& moves() const { return move_; }
+
+ private:
+  /// The motion of the present multipliers, and how much a unit of each opens its gap.
+  void prepare(std::span<const double> ease) {
+    move_.assign(ease.size(), {});
+    for (std::size_t i = 0; i < constraints_.size(); ++i) {
+      const GapConstraint& c = constraints_[i];
+      response_[i] = 0;
+      for (std::size_t k = 0; k < 4; ++k) response_[i] += c.w[k] * c.w[k] * ease[at(c.v[k])];
+      if (multiplier_[i] > 0) push(i, multiplier_[i], ease);
     }
   }
-  return move;
+
+  double correct(std::size_t i, std::span<const double> ease) {
+    const GapConstraint& c = constraints_[i];
+    double opened = 0;
+    for (std::size_t k = 0; k < 4; ++k) opened += c.w[k] * dot(c.n, move_[at(c.v[k])]);
+    const double step =
+        std::max(kOverRelaxation * (missing_[i] - opened) / response_[i], -multiplier_[i]);
+    if (step == 0) return 0;
+    multiplier_[i] += step;
+    push(i, step, ease);
+    return std::fabs(step) * response_[i];
+  }
+
+  void push(std::size_t i, double step, std::span<const double> ease) {
+    const GapConstraint& c = constraints_[i];
+    for (std::size_t k = 0; k < 4; ++k)
+      move_[at(c.v[k])] += (step * c.w[k] * ease[at(c.v[k])]) * c.n;
+  }
+
+  std::span<const GapConstraint> constraints_;
+  std::span<const double> missing_;
+  std::vector<double> multiplier_, response_;
+  std::vector<Vec3d> move_;
+  std::vector<std::size_t> acting_;
+};
+
+double largest(std::span<const Vec3d> moves) {
+  double most = 0;
+  for (const Vec3d& m : moves) most = std::max(most, norm(m));
+  return most;
 }
 
 }  // namespace
 
-std::vector<GapConstraint> collect_constraints(const RepairMesh& mesh,
-                                               std::span<const SidedContour> contours,
-                                               double offset, bool parted) {
-  return Collector(mesh, contours, offset, parted).run();
-}
-
-double gap_of(const RepairMesh& mesh, const GapConstraint& constraint) {
-  Vec3d gap;
-  for (std::size_t k = 0; k < 4; ++k) gap += constraint.w[k] * mesh.position(constraint.v[k]);
-  return dot(constraint.n, gap);
-}
-
 void move_vertices(RepairMesh& mesh, std::span<const GapConstraint> all, double limit,
-                   double tolerance) {
+                   double tolerance, std::int64_t& work) {
   // No vertex has to move further than the most that a constraint lacks at the start.
   std::vector<double> all_missing;
   double most = 0;
   for (const GapConstraint& c : all) {
     Vec3d gap;
-    for (std::size_t k = 0; k < 4; ++k) gap += c.w[k] * mesh.start[at(c.v[k])];
+    for (std::size_t k = 0; k < 4; ++k) gap += c.w[k] * mesh.base[at(c.v[k])];
     all_missing.push_back(c.target - dot(c.n, gap));
     most = std::max(most, all_missing.back());
   }
@@ -361,26 +123,36 @@ void move_vertices(RepairMesh& mesh, std::span<const GapConstraint> all, double 
       missing.push_back(all_missing[i]);
     }
 
-  // Vertices that would move further are made heavier, so that their neighbours move more.
+  // Vertices that would move further are made heavier, so that their neighbours move more, as long
+  // as the constraints hold with that and it helps.
   std::vector<double> ease(mesh.free.begin(), mesh.free.end());
-  std::vector<Vec3d> move;
-  for (int round = 0; round < kMostRounds; ++round) {
-    move = smallest_moves(constraints, missing, ease, tolerance);
+  SmallestMoves solver(constraints, missing);
+  double residual = solver.solve(ease, tolerance, work);
+  std::vector<Vec3d> move = solver.moves();
+  int waited = 0;
+  for (int round = 0; round < kMostRounds && waited < kPatience; ++round) {
     bool far = false;
     for (std::size_t v = 0; v < move.size(); ++v) {
-      const double length = norm(move[v]);
+      const double length = norm(solver.moves()[v]);
       if (!(length > 1.001 * most)) continue;
       ease[v] *= std::pow(most / length, 2);
       far = true;
     }
     if (!far) break;
+    const double next = solver.solve(ease, tolerance, work);
+    const bool better =
+        next <= std::max(residual, tolerance) && largest(solver.moves()) < 0.999 * largest(move);
+    waited = better ? 0 : waited + 1;
+    if (!better) continue;
+    residual = next;
+    move = solver.moves();
   }
 
   // The positions are rounded to single precision, as the solver will read them.
   for (std::size_t v = 0; v < mesh.x.size(); ++v) {
     const double length = norm(move[v]);
     if (length > limit) move[v] = (limit / length) * move[v];
-    mesh.x[v] = convert<double>(convert<float>(mesh.start[v] + move[v]));
+    mesh.x[v] = convert<double>(convert<float>(mesh.base[v] + move[v]));
   }
 }
 

@@ -1,43 +1,18 @@
 // The smallest motion that brings every element to its side of the others.
 #pragma once
 
+#include <cstdint>
 #include <span>
-#include <vector>
 
-#include "sim/scene/repair_sides.h"
+#include "sim/scene/repair_constraints.h"
 
 namespace icloth {
 
-/// A contour with its side, as one sheet sees it.
-struct SidedContour {
-  Contour contour;  ///< its twin is a number in the same list
-  Side side;
-};
-
-/// Σ w_a x_a along n has to be at least `target`.
-struct GapConstraint {
-  std::array<Index, 4> v;
-  std::array<double, 4> w;
-  Vec3d n;            ///< unit
-  double target = 0;  ///< [m]
-};
-
-/// The constraints at the present positions: vertices and edges of decided contours by their side
-/// as deep as the contour goes, all other pairs around by the side on which they are. `offset`
-/// [m] is the gap to reach; pairs that were closer than that at the start may stay so close. Once
-/// nothing crosses any more (`parted`), pairs beside the border of a sheet that goes through
-/// another one have a side, too, and count with the full offset.
-std::vector<GapConstraint> collect_constraints(const RepairMesh& mesh,
-                                               std::span<const SidedContour> contours,
-                                               double offset, bool parted);
-
-/// Gap of a constraint at the present positions [m].
-double gap_of(const RepairMesh& mesh, const GapConstraint& constraint);
-
-/// Writes mesh.x: of all positions that fulfil the constraints the ones closest to mesh.start, no
+/// Writes mesh.x: of all positions that fulfil the constraints the ones closest to mesh.base, no
 /// vertex further than `limit` [m] from it. Constraints are fulfilled to `tolerance` [m] where they
-/// can be.
+/// can be. The constraints looked at are taken off `work`; at 0 the moves are what has been
+/// reached.
 void move_vertices(RepairMesh& mesh, std::span<const GapConstraint> constraints, double limit,
-                   double tolerance);
+                   double tolerance, std::int64_t& work);
 
 }  // namespace icloth

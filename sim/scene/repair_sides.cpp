@@ -271,7 +271,7 @@ std::vector<Side> choose_sides(const RepairMesh& mesh, std::span<const Contour> 
     Fill& fill = fills[c][sign > 0 ? 0 : 1];
     if (!fill.possible || goes_through[set] == 0) continue;
     const bool estimated = !fill.measured && measured[set] > 0;
-    sides[c] = {sign, estimated ? measured[set] : fill.depth, std::move(fill.wrong)};
+    sides[c] = {sign, estimated ? measured[set] : fill.depth, false, {}, std::move(fill.wrong)};
   }
   return sides;
 }

@@ -19,7 +19,11 @@ struct WrongVertex {
 struct Side {
   int sign = 0;      ///< +1: this sheet belongs above the other one, −1: below; 0: not decided
   double depth = 0;  ///< the deepest place on the wrong side [m]
+  bool in_plane = false;  ///< the sheets belong beside each other (sim/scene/repair_seams.h)
+  Vec3d apart;            ///< unit where the faces go apart as a whole (sim/scene/repair_hulls.h)
   std::vector<WrongVertex> wrong;
+
+  bool decided() const { return sign != 0 || in_plane || norm2(apart) > 0; }
 };
 
 /// Decides one side for every contour (Volino and Magnenat-Thalmann 2006), by the regions that the
