@@ -273,24 +273,51 @@ class EarClipper {
   bool careful_ = true;  ///< no thin triangles, and none that leave thin ones
 };
 
-/// Cuts one ring after the other; appends nothing where that fails.
+/// Whether a place is inside of a ring: a ray to the right crosses it an odd number of times.
+bool holds_place(const std::vector<GridPoint>& x, const Ring& ring, double px, double py) {
+  bool inside = false;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const GridPoint a = x[at(ring[i])], b = x[at(ring[(i + 1) % ring.size()])];
+    const auto ax = static_cast<double>(a.x), ay = static_cast<double>(a.y);
+    const auto bx = static_cast<double>(b.x), by = static_cast<double>(b.y);
+    if ((ay > py) != (by > py) && px < ax + (py - ay) * (bx - ax) / (by - ay)) inside = !inside;
+  }
+  return inside;
+}
+
+/// Whether a triangle of one ring lies in another ring. As edges do not cross, the ring does then.
+bool lies_in_another(const std::vector<GridPoint>& x, const Triangle& t,
+                     const std::vector<Ring>& rings, const Ring& own) {
+  double px = 0, py = 0;
+  for (const Index i : t) {
+    px += static_cast<double>(x[at(i)].x) / 3;
+    py += static_cast<double>(x[at(i)].y) / 3;
+  }
+  return std::ranges::any_of(
+      rings, [&](const Ring& ring) { return &ring != &own && holds_place(x, ring, px, py); });
+}
+
+/// Cuts one ring after the other; appends nothing where that fails or rings lie in each other, as
+/// those of a border that goes round twice.
 Outcome cut_rings(const std::vector<GridPoint>& x, const std::vector<Ring>& rings,
                   std::vector<Triangle>& triangles) {
-  const std::size_t before = triangles.size();
+  constexpr std::size_t kMostRings = 64;  // each is compared with all others
   std::vector<GridPoint> points;
-  std::vector<Triangle> found;
+  std::vector<Triangle> all, found;
+  if (rings.size() > kMostRings) return Outcome::too_long;
   for (const Ring& ring : rings) {
     points.clear();
     found.clear();
     for (const Index i : ring) points.push_back(x[at(i)]);
     const Outcome outcome = points.size() < 3 ? Outcome::stuck : EarClipper(points).cut(found);
-    if (outcome != Outcome::done) {
-      triangles.resize(before);
-      return outcome;
-    }
-    for (const Triangle& t : found)
-      triangles.push_back({ring[at(t[0])], ring[at(t[1])], ring[at(t[2])]});
+    if (outcome != Outcome::done) return outcome;
+
+    // The cut gives numbers of the ring's corners.
+    const std::size_t first = all.size();
+    for (const Triangle& t : found) all.push_back({ring[at(t[0])], ring[at(t[1])], ring[at(t[2])]});
+    if (rings.size() > 1 && lies_in_another(x, all[first], rings, ring)) return Outcome::stuck;
   }
+  triangles.insert(triangles.end(), all.begin(), all.end());
   return Outcome::done;
 }
 

@@ -44,9 +44,44 @@ bool certainly_disjoint(const FaceCorners& s, const FaceCorners& t) {
   return true;
 }
 
+using Point2 = std::array<double, 2>;
+
+/// Sign of the turn a b c in a plane where it is certain in spite of rounding, else 0.
+int certain_turn(Point2 a, Point2 b, Point2 c) {
+  const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
+  const double bound = 4.0 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + 1e-280;
+  return left - right > bound ? 1 : left - right < -bound ? -1 : 0;
+}
+
+/// True when a line along an edge of s certainly has s on one side and t on the other.
+bool certainly_separates(const std::array<Point2, 3>& s, const std::array<Point2, 3>& t) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point2 a = s[k], b = s[(k + 1) % 3];
+    const int own = certain_turn(a, b, s[(k + 2) % 3]);
+    if (own != 0 &&
+        std::ranges::all_of(t, [&](const Point2& p) { return certain_turn(a, b, p) == -own; }))
+      return true;
+  }
+  return false;
+}
+
+/// True when the triangles are certainly apart as seen along one of the axes. In a flat cloth all
+/// tests in space are in doubt.
+bool certainly_look_apart(const FaceCorners& s, const FaceCorners& t) {
+  const auto along = [](const FaceCorners& c, double Vec3d::*x, double Vec3d::*y) {
+    return std::array{Point2{c[0].*x, c[0].*y}, Point2{c[1].*x, c[1].*y}, Point2{c[2].*x, c[2].*y}};
+  };
+  constexpr double Vec3d::*kAxes[] = {&Vec3d::x, &Vec3d::y, &Vec3d::z, &Vec3d::x};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto a = along(s, kAxes[k], kAxes[k + 1]), b = along(t, kAxes[k], kAxes[k + 1]);
+    if (certainly_separates(a, b) || certainly_separates(b, a)) return true;
+  }
+  return false;
+}
+
 #if defined(ICLOTH_HAS_CGAL)
 bool intersect(const FaceCorners& s, const FaceCorners& t) {
-  if (certainly_disjoint(s, t)) return false;
+  if (certainly_disjoint(s, t) || certainly_look_apart(s, t)) return false;
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   const auto triangle = [](const FaceCorners& c) {
     const auto point = [](Vec3d p) { return Kernel::Point_3(p.x, p.y, p.z); };
@@ -59,7 +94,7 @@ bool intersect(const FaceCorners& s, const FaceCorners& t) {
 }
 #else
 bool intersect(const FaceCorners& s, const FaceCorners& t) {
-  return !certainly_disjoint(s, t) && triangles_meet(s, t);
+  return !certainly_disjoint(s, t) && !certainly_look_apart(s, t) && triangles_meet(s, t);
 }
 #endif
 

@@ -136,6 +136,8 @@ std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
     std::vector<Touch> own;
     for (std::size_t k = 0; k < 3; ++k) {
       const Index v = faces[at(a)][k];
+
+      // The tree of a crowd gives the faces that may touch this one.
       if (const auto crowd = crowds.find(v); crowd != crowds.end()) {
         Box box = Box::empty();
         for (const Index corner : faces[at(a)]) box.add(positions[at(corner)]);
@@ -144,6 +146,8 @@ std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
         });
         continue;
       }
+
+      // Elsewhere all faces of the vertex are tested that have not been before.
       for (Index i = first[at(v)]; i < first[at(v) + 1]; ++i) {
         const Index b = around[at(i)];
         bool seen = b <= a;

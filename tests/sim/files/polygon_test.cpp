@@ -248,6 +248,13 @@ TEST(Polygon, WhatCannotBeCutIsRefused) {
   for (int i = 0; i < 5; ++i)
     star.push_back({std::cos(0.8 * std::numbers::pi * i), std::sin(0.8 * std::numbers::pi * i), 0});
   EXPECT_NE(cut_polygon(star, none).find("does not cross itself"), std::string::npos);
+
+  // Around a triangle twice, and around two triangles of which one lies in the other.
+  for (const double inner : {1.0, 0.5}) {
+    const std::vector<Vec3d> twice = {{0, 0, 0}, {4, 1, 0},         {1, 4, 0},
+                                      {0, 0, 0}, {4 * inner, 1, 0}, {1, 4 * inner, 0}};
+    EXPECT_NE(cut_polygon(twice, none).find("does not cross itself"), std::string::npos) << inner;
+  }
   EXPECT_TRUE(none.empty());
 }
 
