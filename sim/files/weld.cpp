@@ -93,6 +93,63 @@ std::vector<std::array<Index, 2>> border_edges(const TriangleMesh& mesh) {
   return border;
 }
 
+/// Returns for each used vertex the first one of the file that is at the same place, in the rest
+/// shape too, and kNone for unused ones. Counts unused and welded vertices, and those that are
+/// apart in the rest shape alone.
+std::vector<Index> first_at_place(const TriangleMesh& mesh, const std::vector<Vec3d>& rest,
+                                  bool weld, WeldReport& report) {
+  const std::size_t count = mesh.positions.size();
+  const std::vector<bool> used = used_vertices(mesh);
+  std::vector<Index> order, first(count, kNone);
+  for (std::size_t v = 0; v < count; ++v)
+    if (used[v]) order.push_back(static_cast<Index>(v));
+  for (const Index v : order) first[at(v)] = v;
+  report.unused = count - order.size();
+  if (!weld) return first;
+
+  // Vertices at one place stand together after sorting, the first one of the file in front. The
+  // lists compare numbers, for which 0 and −0 are equal.
+  const auto place = [&](Index v) { return coordinates(mesh.positions[at(v)]); };
+  const auto both = [&](Index v) { return std::tuple(place(v), coordinates(rest[at(v)])); };
+  std::ranges::sort(order, {}, [&](Index v) { return std::tuple(both(v), v); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const Index before = order[i - 1], v = order[i];
+    if (both(before) == both(v)) {
+      first[at(v)] = first[at(before)];
+      ++report.welded;
+    } else if (place(before) == place(v)) {
+      ++report.apart;
+    }
+  }
+  return first;
+}
+
+/// Keeps the vertices that are the first at their place, numbered on in the order of the file.
+/// Writes how the file's vertices stand for them.
+void keep_first(const std::vector<Index>& first, TriangleMesh& mesh, std::vector<Vec3d>& rest,
+                FileLayout& layout) {
+  layout.positions = std::move(mesh.positions);
+  layout.faces = mesh.faces;
+  layout.vertex.assign(first.size(), kNone);
+  const std::vector<Vec3d> file_rest = std::move(rest);
+  mesh.positions.clear();
+  rest.clear();
+
+  // The first vertex at a place has its new number before the others ask for it.
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (first[v] == kNone) continue;
+    if (first[v] == static_cast<Index>(v)) {
+      layout.vertex[v] = static_cast<Index>(mesh.positions.size());
+      mesh.positions.push_back(layout.positions[v]);
+      rest.push_back(file_rest[v]);
+    } else {
+      layout.vertex[v] = layout.vertex[at(first[v])];
+    }
+  }
+  for (Triangle& t : mesh.faces)
+    for (Index& v : t) v = layout.vertex[at(v)];
+}
+
 }  // namespace
 
 bool snap_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, double distance, Vec3d scale) {
@@ -129,53 +186,9 @@ bool snap_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, double distance
 
 WeldReport merge_vertices(TriangleMesh& mesh, std::vector<Vec3d>& rest, bool weld,
                           FileLayout& layout) {
-  const std::size_t count = mesh.positions.size();
-  const std::vector<bool> used = used_vertices(mesh);
   WeldReport report;
-  std::vector<Index> order;
-  for (std::size_t v = 0; v < count; ++v)
-    if (used[v]) order.push_back(static_cast<Index>(v));
-  report.unused = count - order.size();
-
-  // Vertices at one place stand together after sorting, the first one of the file in front. The
-  // lists compare numbers, for which 0 and −0 are equal.
-  std::vector<Index> same_as(count, kNone);
-  for (const Index v : order) same_as[at(v)] = v;
-  if (weld) {
-    const auto place = [&](Index v) { return coordinates(mesh.positions[at(v)]); };
-    const auto both = [&](Index v) { return std::tuple(place(v), coordinates(rest[at(v)])); };
-    std::ranges::sort(order, {}, [&](Index v) { return std::tuple(both(v), v); });
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      const Index before = order[i - 1], v = order[i];
-      if (both(before) == both(v)) {
-        same_as[at(v)] = same_as[at(before)];
-        ++report.welded;
-      } else if (place(before) == place(v)) {
-        ++report.apart;
-      }
-    }
-  }
-  if (report.welded + report.unused == 0) return report;
-
-  // The vertices that stay are numbered on in the order of the file.
-  layout.positions = std::move(mesh.positions);
-  layout.faces = mesh.faces;
-  layout.vertex.assign(count, kNone);
-  const std::vector<Vec3d> file_rest = std::move(rest);
-  mesh.positions.clear();
-  rest.clear();
-  for (std::size_t v = 0; v < count; ++v) {
-    if (same_as[v] == kNone) continue;
-    if (same_as[v] == static_cast<Index>(v)) {
-      layout.vertex[v] = static_cast<Index>(mesh.positions.size());
-      mesh.positions.push_back(layout.positions[v]);
-      rest.push_back(file_rest[v]);
-    } else {
-      layout.vertex[v] = layout.vertex[at(same_as[v])];
-    }
-  }
-  for (Triangle& t : mesh.faces)
-    for (Index& v : t) v = layout.vertex[at(v)];
+  const std::vector<Index> first = first_at_place(mesh, rest, weld, report);
+  if (report.welded + report.unused > 0) keep_first(first, mesh, rest, layout);
   return report;
 }
 
