@@ -15,58 +15,81 @@
 
 namespace icloth::ICLOTH_BUILD {
 
-/// Returns 1 for the cloth faces of a closed surface with outward normals, −1 for those of one with
-/// inward normals, and 0 for faces of open surfaces. A surface, connected over edges, is closed
-/// when two faces meet at each edge and run along it in opposite directions.
-inline std::vector<Real> outward_sides(const World& world) {
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+/// Sets of faces that are connected over edges; each face is a set of its own at first.
+class Surfaces {
+ public:
+  explicit Surfaces(Index faces) : parent_(static_cast<std::size_t>(faces)) {
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
 
-  // A surface is a set of faces, and the sets are united edge by edge below.
-  std::vector<Index> parent(at(world.cloth_faces));
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto surface_of = [&](Index f) {
-    while (parent[at(f)] != f) f = parent[at(f)] = parent[at(parent[at(f)])];
+  /// A face that stands for the surface of face f.
+  Index of(Index f) {
+    while (parent(f) != f) {
+      parent(f) = parent(parent(f));
+      f = parent(f);
+    }
     return f;
-  };
+  }
+  void unite(Index f, Index g) { parent(of(f)) = of(g); }
 
-  // Sorting the sides of all faces brings those along the same edge together.
+ private:
+  Index& parent(Index f) { return parent_[static_cast<std::size_t>(f)]; }
+
+  std::vector<Index> parent_;
+};
+
+/// Unites the cloth faces that meet at edges. Returns one face of every edge at which a surface is
+/// not closed.
+inline std::vector<Index> unite_over_edges(const World& world, Surfaces& surfaces) {
   struct Side {
     Index low, high, face;
     bool forward;
   };
+
+  // Sorting the sides of all faces brings those along the same edge together.
   std::vector<Side> sides;
   for (Index f = 0; f < world.cloth_faces; ++f)
     for (std::size_t a = 0; a < 3; ++a) {
-      const Index from = world.face[at(f)][a], to = world.face[at(f)][(a + 1) % 3];
+      const Triangle& t = world.face[static_cast<std::size_t>(f)];
+      const Index from = t[a], to = t[(a + 1) % 3];
       sides.push_back({std::min(from, to), std::max(from, to), f, from < to});
     }
   const auto edge = [](const Side& s) { return std::pair(s.low, s.high); };
   std::ranges::sort(sides, {}, edge);
 
-  // Faces that meet at an edge belong to one surface; `open` marks where one is not closed.
-  std::vector<bool> open(parent.size());
+  // Two faces that run along their edge in opposite directions close it.
+  std::vector<Index> open;
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i;
     for (; end < sides.size() && edge(sides[end]) == edge(sides[i]); ++end)
-      parent[at(surface_of(sides[end].face))] = surface_of(sides[i].face);
-    if (end - i != 2 || sides[i].forward == sides[i + 1].forward) open[at(sides[i].face)] = true;
+      surfaces.unite(sides[end].face, sides[i].face);
+    if (end - i != 2 || sides[i].forward == sides[i + 1].forward) open.push_back(sides[i].face);
     i = end;
   }
+  return open;
+}
+
+/// Returns 1 for the cloth faces of a closed surface with outward normals, −1 for those of one with
+/// inward normals, and 0 for faces of open surfaces. A surface, connected over edges, is closed
+/// when two faces meet at each edge and run along it in opposite directions.
+inline std::vector<Real> outward_sides(const World& world) {
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  Surfaces surfaces(world.cloth_faces);
+  std::vector<bool> is_open(at(world.cloth_faces));
+  for (const Index f : unite_over_edges(world, surfaces)) is_open[at(surfaces.of(f))] = true;
 
   // The sign of the volume says which way the normals of a closed surface point.
-  std::vector<double> volume(parent.size());
-  std::vector<bool> surface_open(parent.size());
+  std::vector<double> volume(at(world.cloth_faces));
   for (Index f = 0; f < world.cloth_faces; ++f) {
     const Triangle& t = world.face[at(f)];
     const Vec3d a = world.position[at(t[0])], b = world.position[at(t[1])];
-    volume[at(surface_of(f))] += dot(a, cross(b, world.position[at(t[2])]));
-    if (open[at(f)]) surface_open[at(surface_of(f))] = true;
+    volume[at(surfaces.of(f))] += dot(a, cross(b, world.position[at(t[2])]));
   }
 
   std::vector<Real> outward;
   for (Index f = 0; f < world.cloth_faces; ++f) {
-    const std::size_t surface = at(surface_of(f));
-    outward.push_back(surface_open[surface] ? Real(0) : Real(volume[surface] < 0 ? -1 : 1));
+    const std::size_t surface = at(surfaces.of(f));
+    outward.push_back(is_open[surface] ? Real(0) : Real(volume[surface] < 0 ? -1 : 1));
   }
   return outward;
 }
