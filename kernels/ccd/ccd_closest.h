@@ -16,6 +16,7 @@ struct ClosestPair {
   Vec3<N> first;   // most promising direction
   Vec3<N> second;  // another one, worth trying when `doubtful`
   bool doubtful;   // ill-conditioned, or close to the border of a feature
+  N depth{};       // unless `doubtful`: |n|² times the smallest distance of a weight from 0 or 1
 };
 
 namespace detail {
@@ -57,6 +58,7 @@ ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::vf, N>& pair, N
   if (x.interior) {
     const bool thin = !(norm2(n) > N(detail::kThin2) * norm2(e1) * norm2(e2));
     out.doubtful = thin || x.w[k] < N(detail::kNearBorder);
+    out.depth = x.w[k] * norm2(n);
     if (!out.doubtful) return out;
   }
 
@@ -88,6 +90,7 @@ ICLOTH_HD ClosestPair<N> closest_pair(const PairMotion<PairKind::ee, N>& pair, N
         detail::smaller(detail::smaller(x.s, N(1) - x.s), detail::smaller(x.t, N(1) - x.t));
     const bool thin = !(norm2(n) > N(detail::kThin2) * norm2(e1) * norm2(e2));
     out.doubtful = thin || border < N(detail::kNearBorder);
+    out.depth = border * norm2(n);
     if (!out.doubtful) return out;
   }
 

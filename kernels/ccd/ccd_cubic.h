@@ -130,6 +130,12 @@ struct Bernstein3 {
     return s * (s * x + t * y) + t * (s * y + t * z);
   }
 
+  /// The sign of the true value at t where it is certain, else 0.
+  ICLOTH_HD double certain_sign(T t) const {
+    const T value = (*this)(t);
+    return value > error ? 1 : value < -error ? -1 : 0;
+  }
+
   /// A third of the derivative at t.
   ICLOTH_HD T slope(T t) const {
     const T s = T(1) - t, x = c[1] - c[0], y = c[2] - c[1], z = c[3] - c[2];

@@ -12,11 +12,12 @@
 //     (ccd_separation.h, directions from ccd_closest.h).
 // Where no direction separates them the front stops: contact. Grazing contacts, parallel edges,
 // slivers and pairs that stay coplanar are no special cases: for the last ones the second kind of
-// step alone is a conservative advancement. A front that fp64 stops without a clear crossing is
-// moved on in double-double arithmetic by the same functions.
+// step alone is a conservative advancement. Nor are faces and edges that collapse, whose volume
+// changes its sign far from any contact (ccd_collapse.h). A front that fp64 stops without a clear
+// crossing is moved on in double-double arithmetic by the same functions.
 #pragma once
 
-#include "kernels/ccd/ccd_closest.h"
+#include "kernels/ccd/ccd_collapse.h"
 #include "kernels/ccd/ccd_first_zero.h"
 
 namespace icloth {
@@ -30,6 +31,10 @@ struct CcdHit {
 
 /// Number of steps of the front after which a query counts as a contact.
 inline constexpr int kMaxSteps = 100;
+
+/// From this step in double-double arithmetic on, the steps may also follow the turning of edges,
+/// since the front moves too slowly for fixed directions.
+inline constexpr int kFirstTurningStep = 4;
 
 namespace detail {
 
@@ -73,7 +78,7 @@ template <class N>
 struct Front {
   N time;
   N w[4]{};           // weights of the closest points at `time`
-  bool clear{false};  // a plain crossing in the interior of both primitives
+  bool clear{false};  // a plain crossing in the interior of both primitives: surely a contact
 
   // The next three tell the side from which the pair comes, by the last step that took longer than
   // kShort.
@@ -82,18 +87,24 @@ struct Front {
   Vec3<N> last{};  // a direction that separated the pair on it
 };
 
-/// The sign of f(t) where it is certain, else 0.
-template <class N>
-ICLOTH_HD double certain_sign(const Bernstein3<N>& f, N t) {
-  const N value = f(t);
-  return value > f.error ? 1 : value < -f.error ? -1 : 0;
-}
-
-/// True when f certainly changes its sign within a short time around t.
+/// True when f certainly changes its sign within kCrossingTime before and after t.
 template <class N>
 ICLOTH_HD bool crosses_at(const Bernstein3<N>& f, N t) {
-  const N near = N(0x1p-38);
-  return certain_sign(f, larger(t - near, N(0))) * certain_sign(f, smaller(t + near, N(1))) < 0;
+  const N near = N(kCrossingTime);
+  return f.certain_sign(larger(t - near, N(0))) * f.certain_sign(smaller(t + near, N(1))) < 0;
+}
+
+/// The end of separation by the features of the boundary, where the points of the front's weights
+/// do not touch already, and its direction in d. Where there is none, the weights of the front are
+/// mended.
+template <PairKind K, class N>
+[[gnu::noinline, gnu::cold]] ICLOTH_HD N separated_at_collapse_until(const PairMotion<K, N>& pair,
+                                                                     double margin, Front<N>& front,
+                                                                     Vec3<N>& d) {
+  if (touches(pair, front.time, front.w)) return front.time;
+  const N end = separated_by_boundary_until(pair, margin, front.time, d);
+  if (!(end > front.time)) mend_weights(pair, front.time, front.w);
+  return end;
 }
 
 /// Moves the front in time by the two kinds of steps that the head of this file describes, until it
@@ -109,13 +120,14 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
     if (front.time > N(1)) return;
     if (front.time - start > N(kShort)) {
       front.since = start;
-      front.side = certain_sign(f, start);
+      front.side = f.certain_sign(start);
     }
 
     // A plain crossing in the interior of both primitives is a contact; no direction need be tried.
     const ClosestPair<N> closest = closest_pair(pair, front.time);
     for (int k = 0; k < 4; ++k) front.w[k] = closest.w[k];
-    front.clear = !closest.doubtful && crosses_at(f, front.time);
+    front.clear =
+        !closest.doubtful && crosses_at(f, front.time) && certainly_inside(pair, closest.depth);
     if (front.clear) return;
 
     // The second kind of step goes on for as long as some direction separates the pair. The
@@ -128,7 +140,19 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
       end = separated_until(pair, direction, margin, front.time);
     }
     if (end < needed) end = separated_by_axes_until(pair, margin, front.time, direction);
+
+    // At an instant of collapse the closest features may be the wrong ones, and all those of the
+    // boundary are tried.
+    if (end < needed) end = separated_at_collapse_until(pair, margin, front, direction);
     if (end < needed) return;
+
+    // Many short steps are a sign of edges that turn past a point, and a side of the edge serves.
+    // This is left to the finer front, since it would slow down the code for all other pairs.
+    if constexpr (sizeof(N) == sizeof(DoubleDouble)) {
+      if (step >= kFirstTurningStep && !(margin > 0)) {
+        end = separated_in_view_until(pair, front.time, end, direction);
+      }
+    }
 
     // A step that took long enough tells the side from which the pair comes.
     if (end - front.time > N(kShort)) {
@@ -139,17 +163,6 @@ ICLOTH_HD void advance(const PairMotion<K, N>& pair, const Bernstein3<N>& f, dou
     front.time = end;
     if (end > N(1)) return;
   }
-}
-
-/// The gap vector of weights w, from the given differences between the two primitives.
-template <PairKind K>
-ICLOTH_HD Vec3d weighted_gap(const double* w, const Vec3d* r) {
-  Vec3d gap;
-  for (int i = 0; i < kDifferences<K>; ++i) {
-    const double share = K == PairKind::vf ? -w[1 + i] : -w[2 + i / 2] * w[i % 2];
-    gap += share * r[i];
-  }
-  return gap;
 }
 
 /// The unit normal at the contact, towards the side from which the pair comes.
@@ -200,9 +213,9 @@ ICLOTH_HD bool confirm(const CcdQuery<double>& query, double margin, bool coplan
   advance(pair, f, margin, fine);
   if (fine.time > DoubleDouble(1)) return false;
 
-  // A coplanar pair keeps the directions in its plane: those of the finer front come from a plane
-  // that rounding made up.
-  if (coplanar) return true;
+  // A coplanar pair keeps the directions in its plane, unless the finer front has left them behind:
+  // those of the finer front come from a plane that rounding made up.
+  if (coplanar && !(fine.time - DoubleDouble(front.time) > DoubleDouble(kShort))) return true;
 
   // The time is rounded down, and the side of the approach is taken over where the finer front
   // found one.
