@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "render/view_matrices.h"
+#include "sim/files/box.h"
 
 namespace icloth {
 
@@ -24,21 +24,11 @@ void axes(Vec3d direction, Vec3d& right, Vec3d& up) {
   up = cross(direction, right);
 }
 
-/// A box that grows point by point.
-struct Box {
-  static constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  Vec3f low{kInfinite, kInfinite, kInfinite}, high{-kInfinite, -kInfinite, -kInfinite};
-
-  void add(Vec3f p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  Bounds bounds() const {
-    if (low.x > high.x) return {};
-    const Vec3d a = convert<double>(low), b = convert<double>(high);
-    return {0.5 * (a + b), std::max(1e-3, 0.5 * norm(b - a)), a.y};
-  }
-};
+/// The sphere around a box.
+Bounds sphere_around(const Box& box) {
+  if (box.empty()) return {};
+  return {0.5 * (box.low + box.high), std::max(1e-3, 0.5 * norm(box.size())), box.low.y};
+}
 
 }  // namespace
 
@@ -47,14 +37,14 @@ Bounds bounds_of(std::span<const Vec3f> points, std::size_t cloth) {
 
   // The cloth decides which of the other points are near enough to matter.
   Box box;
-  for (const Vec3f p : points.first(cloth)) box.add(p);
-  const Bounds near_cloth = box.bounds();
+  for (const Vec3f p : points.first(cloth)) box.add(convert<double>(p));
+  const Bounds near_cloth = sphere_around(box);
   const double reach = kNear * near_cloth.radius;
-  for (const Vec3f p : points.subspan(cloth)) {
-    const Vec3d offset = convert<double>(p) - near_cloth.centre;
+  for (const Vec3f point : points.subspan(cloth)) {
+    const Vec3d p = convert<double>(point), offset = p - near_cloth.centre;
     if (cloth == 0 || norm2(offset) < reach * reach) box.add(p);
   }
-  return box.bounds();
+  return sphere_around(box);
 }
 
 LightSample light_sample(int i, int n) {

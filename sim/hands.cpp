@@ -4,12 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "kernels/index.h"
 #include "sim/state/limits.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Vec3d interpolate(const Triangle& t, Vec3d b, std::span<const Vec3d> field) {
   return b.x * field[at(t[0])] + b.y * field[at(t[1])] + b.z * field[at(t[2])];

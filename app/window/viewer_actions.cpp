@@ -4,6 +4,7 @@
 
 #include "app/common/camera_json.h"
 #include "app/window/viewer.h"
+#include "sim/files/box.h"
 
 namespace icloth {
 
@@ -243,12 +244,8 @@ std::vector<Vec3d> Viewer::cloth_points() const {
 
 void Viewer::frame_box(const std::vector<Vec3d>& points) {
   if (points.empty()) return;
-  Vec3d low = points.front(), high = low;
-  for (const Vec3d p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  camera_.frame_box(low, high,
+  const Box box = box_around(points);
+  camera_.frame_box(box.low, box.high,
                     static_cast<double>(view_.width) / static_cast<double>(view_.height));
 }
 

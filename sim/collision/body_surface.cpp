@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "kernels/distance.h"
+#include "kernels/index.h"
 #include "sim/scene/exact_triangles.h"
 
 namespace icloth {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Vec3d area_vector(const FaceCorners& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 

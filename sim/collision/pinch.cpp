@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <set>
 
+#include "kernels/index.h"
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::vector<Vec3d> doubles(const Array<Vec3r>& array) {
   std::vector<Vec3d> out;

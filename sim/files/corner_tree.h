@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/index.h"
 #include "kernels/vec.h"
 #include "sim/files/grid_point.h"
 
@@ -51,7 +52,6 @@ class CornerTree {
 
  private:
   static constexpr Index kLeafSize = 8;
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   /// Nodes in depth-first order.
   struct Node {

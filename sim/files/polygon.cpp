@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "kernels/index.h"
+#include "sim/files/box.h"
 #include "sim/files/corner_tree.h"
 #include "sim/files/grid_point.h"
 #include "sim/files/ring_crossings.h"
@@ -21,8 +23,6 @@ constexpr double kThinnest = 1e-6;  // of twice a triangle's area against its lo
 // polygons need less than a quarter of them.
 constexpr std::int64_t kMostTests = 1'000'000, kMostTestsOfCorner = 4000;
 constexpr double kGridCells = 1 << 29;  // along the extent: products of differences fit 64 bits
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 double length2(GridPoint a, GridPoint b) {
   const auto x = static_cast<double>(b.x - a.x), y = static_cast<double>(b.y - a.y);
@@ -44,12 +44,8 @@ Vec3d area_vector(std::span<const Vec3d> corners) {
 }
 
 double largest_extent(std::span<const Vec3d> corners) {
-  Vec3d low = corners[0], high = low;
-  for (const Vec3d p : corners) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  const Vec3d size = box_around(corners).size();
+  return std::max({size.x, size.y, size.z});
 }
 
 /// The corners seen along the normal, where the polygon turns left.

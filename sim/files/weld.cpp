@@ -6,14 +6,14 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
 
 /// Vertices that may lie in the cells around one: those that are more than a cell apart in the
 /// mesh are at most about 60, the rest shape can tell more of them apart.
 constexpr std::size_t kMostNear = 400;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 using Cell = std::array<double, 3>;  // whole numbers
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Calls visit(j) for every neighbour j of node i.
 template <class Visit>

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
 
@@ -11,8 +13,6 @@ using Row = std::array<double, 3>;  // factors of H_uu, H_vv, H_uv, or of three 
 constexpr double kLargestGain = 4;
 /// Shares of the mid-edge operator that are tried in turn.
 constexpr double kShares[] = {0.5, 0.75, 1.0};
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Corners of a face in its material axes, the first at the origin.
 std::array<Vec2d, 3> corners(const std::array<double, 4>& inverse) {

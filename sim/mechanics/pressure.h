@@ -10,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "kernels/index.h"
 #include "kernels/parallel/parallel.h"
 #include "sim/mechanics/force.h"
 
@@ -73,7 +74,6 @@ inline std::vector<Index> unite_over_edges(const World& world, Surfaces& surface
 /// inward normals, and 0 for faces of open surfaces. A surface, connected over edges, is closed
 /// when two faces meet at each edge and run along it in opposite directions.
 inline std::vector<Real> outward_sides(const World& world) {
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   Surfaces surfaces(world.cloth_faces);
   std::vector<bool> is_open(at(world.cloth_faces));
   for (const Index f : unite_over_edges(world, surfaces)) is_open[at(surfaces.of(f))] = true;

@@ -2,38 +2,14 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
 
-#include "kernels/vec.h"
+#include "kernels/index.h"
+#include "sim/files/box.h"
 
 namespace icloth {
-
-/// Box along the axes; the empty one holds nothing and overlaps nothing.
-struct Box {
-  Vec3d low, high;
-
-  static Box empty() {
-    constexpr double inf = std::numeric_limits<double>::infinity();
-    return {{inf, inf, inf}, {-inf, -inf, -inf}};
-  }
-  void add(const Box& b) {
-    low = {std::min(low.x, b.low.x), std::min(low.y, b.low.y), std::min(low.z, b.low.z)};
-    high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y), std::max(high.z, b.high.z)};
-  }
-  void add(Vec3d p) { add(Box{p, p}); }
-  /// The same box, larger by `reach` on every side.
-  Box grown(double reach) const {
-    const Vec3d r{reach, reach, reach};
-    return {low - r, high + r};
-  }
-  bool overlaps(const Box& b) const {
-    return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y &&
-           low.z <= b.high.z && b.low.z <= high.z;
-  }
-};
 
 /// Boxes in a binary tree, split at the median; nodes in depth-first order. Refers to the boxes
 /// that it was made of.
@@ -63,8 +39,6 @@ class BoxTree {
 
  private:
   static constexpr Index kLeafSize = 4;
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
   struct Node {
     Box box;
     Index first = 0, count = 0;  // range in order_ of a leaf, empty otherwise
@@ -74,7 +48,7 @@ class BoxTree {
   void build(Index begin, Index end) {
     // A node is numbered before its subtrees, which puts the nodes in depth-first order.
     const std::size_t n = nodes_.size();
-    nodes_.push_back({Box::empty(), begin, end - begin <= kLeafSize ? end - begin : 0, 0});
+    nodes_.push_back({Box{}, begin, end - begin <= kLeafSize ? end - begin : 0, 0});
     for (Index i = begin; i < end; ++i) nodes_[n].box.add(boxes_[at(order_[at(i)])]);
 
     // Halving at the median of the centres, across the longest side, keeps boxes compact and the

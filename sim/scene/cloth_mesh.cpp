@@ -4,15 +4,16 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernels/index.h"
+#include "sim/files/box.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
+#include "sim/scene/edge_lengths.h"
 #include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A text such as "3 of 120 vertices".
 std::string count_of(std::size_t some, std::size_t all) {
@@ -23,13 +24,8 @@ std::string count_of(std::size_t some, std::size_t all) {
 /// below the shortest one, so that welding by it loses no face.
 double seam_gap(const TriangleMesh& mesh) {
   std::vector<double> lengths;
-  for (const Triangle& t : mesh.faces)
-    for (std::size_t c = 0; c < 3; ++c)
-      lengths.push_back(norm(mesh.positions[at(t[(c + 1) % 3])] - mesh.positions[at(t[c])]));
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::ranges::nth_element(lengths, middle);
-  const double shortest = *std::min_element(lengths.begin(), middle + 1);
-  return std::min(1e-3 * *middle, 0.5 * shortest);
+  add_side_lengths(mesh.faces, mesh.positions, lengths);
+  return std::min(1e-3 * median(lengths), 0.5 * std::ranges::min(lengths));
 }
 
 /// Moves near vertices together; a face must not lose a corner by that.
@@ -141,12 +137,7 @@ std::string unit_note(const std::string& object, const std::vector<Vec3d>& posit
   if (positions.empty()) return "";
 
   // The size is measured along the axes.
-  Vec3d low = positions.front(), high = low;
-  for (const Vec3d p : positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  const Vec3d size = high - low;
+  const Vec3d size = box_around(positions).size();
   const double largest = std::max({size.x, size.y, size.z});
   const double smallest = std::min({size.x, size.y, size.z});
   const bool too_large = largest > kLargest && (is_cloth || smallest > kThick);

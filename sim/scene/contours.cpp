@@ -6,12 +6,11 @@
 #include <optional>
 #include <tuple>
 
+#include "kernels/index.h"
 #include "sim/scene/exact_triangles.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Sets that can be united; the smallest member stands for its set.
 class Sets {

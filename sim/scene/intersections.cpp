@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "kernels/index.h"
 #include "kernels/parallel/parallel_for.h"
 #include "sim/scene/box_tree.h"
 #include "sim/scene/exact_triangles.h"
@@ -16,10 +17,8 @@
 namespace icloth {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 Box box_of(const FaceCorners& t) {
-  Box box = Box::empty();
+  Box box;
   for (Vec3d p : t) box.add(p);
   return box;
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
 
 constexpr int kMostReturns = 4;  ///< looks for pairs that moves taken back have made
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Clusters of moved vertices; the smallest vertex stands for its cluster.
 class Clusters {

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "kernels/distance.h"
+#include "kernels/index.h"
 #include "sim/scene/box_tree.h"
 #include "sim/scene/repair_hulls.h"
 #include "sim/scene/repair_seams.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kSlack = 1.5;  ///< an edge under a ridge is deeper than its closest point tells
 
@@ -251,7 +250,7 @@ class Collector {
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e)
       edge_boxes.push_back(edge_box(static_cast<Index>(e)));
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
-      face_boxes.push_back(Box::empty());
+      face_boxes.emplace_back();
       for (const Vec3d& p : mesh_.corners(static_cast<Index>(f))) face_boxes.back().add(p);
     }
     const BoxTree vertices(vertex_boxes), edges(edge_boxes), faces(face_boxes);
@@ -344,7 +343,7 @@ class Collector {
   }
 
   Box edge_box(Index e) const {
-    Box box = Box::empty();
+    Box box;
     for (const Index v : mesh_.edges[at(e)]) box.add(mesh_.position(v));
     return box;
   }

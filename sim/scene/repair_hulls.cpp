@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
 
 constexpr std::size_t kMostSegments = 12;  ///< longer contours bend around each other
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::vector<Index> sorted(std::vector<Index> list) {
   std::ranges::sort(list);

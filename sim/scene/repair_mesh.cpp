@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "kernels/distance.h"
+#include "kernels/index.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Lists of the rows that hold each column, in the order of the rows.
 template <std::size_t N>

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr int kMostSweeps = 20;          ///< over all constraints
 constexpr int kInnerSweeps = 40;         ///< over those that act, after each of them
@@ -15,6 +15,7 @@ constexpr int kStall = 3;                ///< sweeps without a smaller correctio
 constexpr double kOverRelaxation = 1.3;  ///< fewest sweeps in trials; below 2 it converges
 constexpr int kMostRounds = 40;          ///< of evening out the moves
 constexpr int kPatience = 4;             ///< of them that do not help
+
 /// The motion of least Σ |move|² / ease that opens every gap by what it misses. Hildreth's method:
 /// one constraint after the other, with multipliers that never pull.
 class SmallestMoves {

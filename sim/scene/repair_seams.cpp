@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "kernels/distance.h"
+#include "kernels/index.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Surfaces behind two borders look into different directions from this length of the difference
 /// of the directions on (about 14°); closer ones are layers of each other.

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <set>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Two sheets are taken as layers of each other up to this cosine of the angle between them (about
 /// 70°); steeper ones meet with a border, and the one says nothing about the side of the other.

@@ -7,11 +7,13 @@
 #include <numbers>
 
 #include "sim/files/assets.h"
+#include "sim/files/box.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
 #include "sim/scene/cloth_mesh.h"
+#include "sim/scene/edge_lengths.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/presets.h"
 #include "sim/scene/repair.h"
@@ -72,19 +74,8 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
 /// Median of the edges at rest, since those of a stretched or bent start pose have other lengths.
 double median_edge(const Scene& scene) {
   std::vector<double> lengths;
-  for (const Cloth& cloth : scene.cloths)
-    for (const Triangle& face : cloth.mesh.faces)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto at = [&](std::size_t k) {
-          return cloth.rest[static_cast<std::size_t>(face[k])];
-        };
-        lengths.push_back(norm(at((c + 1) % 3) - at(c)));
-      }
-
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::ranges::nth_element(lengths, middle);
-  return *middle;
+  for (const Cloth& cloth : scene.cloths) add_side_lengths(cloth.mesh.faces, cloth.rest, lengths);
+  return median(std::move(lengths));
 }
 
 /// Neighbours repel each other in the plane when the thickness is large against the edges: above
@@ -117,10 +108,10 @@ void hang_by_highest(Cloth& cloth) {
 /// Adds a camera that sees all cloths at their start.
 void add_framing_camera(Scene& scene) {
   if (scene.cloths.empty()) return;
-  Bounds bounds;
+  Box box;
   for (const Cloth& cloth : scene.cloths)
-    for (Vec3d p : cloth.mesh.positions) bounds.add(p);
-  const auto [low, high] = bounds;
+    for (Vec3d p : cloth.mesh.positions) box.add(p);
+  const auto [low, high] = box;
 
   // The sphere around the cloths fills most of the picture.
   CameraPose camera;

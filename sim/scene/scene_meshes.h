@@ -1,7 +1,6 @@
 // The meshes of a scene at given positions, for files and pictures.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -22,16 +21,6 @@ struct SceneMeshes {
 /// meshes of the scene are as in their files.
 SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
                          std::span<const FileLayout> layouts = {});
-
-/// Smallest box around points.
-struct Bounds {
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-
-  void add(Vec3d p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-};
 
 /// Faces of all objects as one soup, for find_intersections.
 struct SceneFaces {

@@ -3,6 +3,7 @@
 
 #include "sim/files/assets.h"
 #include "sim/files/body_io.h"
+#include "sim/files/box.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
@@ -65,9 +66,9 @@ void note_clips(const Body& body, const std::string& file, const std::string& ob
 void note_distance(const Obstacle& obstacle, const std::string& file, const SceneFolder& folder) {
   double farthest = 0;
   std::size_t vertex = 0;
-  Bounds bounds;
+  Box box;
   for (std::size_t v = 0; v < obstacle.mesh.positions.size(); ++v) {
-    bounds.add(obstacle.mesh.positions[v]);
+    box.add(obstacle.mesh.positions[v]);
     const double distance =
         norm(convert<double>(obstacle.frames.front()[v]) - obstacle.mesh.positions[v]);
     if (distance > farthest) {
@@ -77,7 +78,7 @@ void note_distance(const Obstacle& obstacle, const std::string& file, const Scen
   }
 
   // Caches are in single precision, and meshes are written with few digits.
-  if (farthest <= std::max(1e-5, 1e-4 * norm(bounds.high - bounds.low))) return;
+  if (farthest <= std::max(1e-5, 1e-4 * norm(box.size()))) return;
   folder.note("obstacle " + in_quotes(obstacle.name) + ": frame 0 of " + file + " is up to " +
               brief_number(1e3 * farthest) + " mm away from the mesh (vertex " +
               std::to_string(vertex) + "): the body starts at frame 0 of its animation");

@@ -6,14 +6,13 @@
 #include <set>
 #include <utility>
 
+#include "kernels/index.h"
 #include "kernels/parallel/parallel_for.h"
 #include "sim/scene/box_tree.h"
 #include "sim/scene/exact_triangles.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 bool has(const Triangle& face, Index v) { return v == face[0] || v == face[1] || v == face[2]; }
 
@@ -39,7 +38,7 @@ class Crowd {
   static std::vector<Box> boxes_of(std::span<const Vec3d> positions,
                                    std::span<const Triangle> faces, std::span<const Index> around,
                                    Index centre) {
-    std::vector<Box> boxes(around.size(), Box::empty());
+    std::vector<Box> boxes(around.size());
     for (std::size_t i = 0; i < around.size(); ++i)
       for (const Index v : faces[at(around[i])])
         if (v != centre) boxes[i].add(positions[at(v)]);
@@ -139,7 +138,7 @@ std::vector<Touch> find_touching_neighbours(std::span<const Vec3d> positions,
 
       // The tree of a crowd gives the faces that may touch this one.
       if (const auto crowd = crowds.find(v); crowd != crowds.end()) {
-        Box box = Box::empty();
+        Box box;
         for (const Index corner : faces[at(a)]) box.add(positions[at(corner)]);
         crowd->second.visit(box, [&](Index b) {
           if (b != a) test.run(std::min(a, b), std::max(a, b), own);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
+#include "sim/scene/edge_lengths.h"
 
 namespace icloth {
 namespace {
@@ -24,8 +26,6 @@ double cross2(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 std::string element(const Cloth& cloth, const char* kind, std::size_t number) {
   return "cloth " + in_quotes(cloth.name) + ", " + kind + " " + std::to_string(number);
 }
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 const std::vector<Vec3d>& rest_positions(const Cloth& cloth) {
   return cloth.rest.empty() ? cloth.mesh.positions : cloth.rest;
@@ -275,10 +275,7 @@ double median_edge_length(const World& world) {
   lengths.reserve(at(world.cloth_edges));
   for (std::size_t e = 0; e < at(world.cloth_edges); ++e)
     lengths.push_back(norm(world.rest[at(world.edge[e][1])] - world.rest[at(world.edge[e][0])]));
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median(std::move(lengths));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_io.h"
+#include "sim/scene/scene_meshes.h"
 #include "sim/simulator.h"
 #include "tests/sim/parity_stages.h"
 #include "tests/support/small_scenes.h"
@@ -173,18 +174,8 @@ struct ScarfRun {
   }
 
   std::size_t count_intersections(const Scene& scene) const {
-    std::vector<Triangle> faces;
-    std::vector<int> group;
-    Index first = 0;
-    const auto add = [&](const TriangleMesh& mesh, int g) {
-      for (const Triangle& t : mesh.faces)
-        faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-      group.resize(faces.size(), g);
-      first += static_cast<Index>(mesh.positions.size());
-    };
-    for (const Cloth& cloth : scene.cloths) add(cloth.mesh, 0);
-    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.mesh, -1);
-    return find_intersections(positions, faces, group).size();
+    const SceneFaces soup = scene_faces(scene);
+    return find_intersections(positions, soup.faces, soup.group).size();
   }
 };
 

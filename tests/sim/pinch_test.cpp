@@ -1,10 +1,12 @@
 // Cloth between bodies that overlap: what is let go, what is kept, and that it comes back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "sim/scene/intersections.h"
+#include "sim/scene/scene_meshes.h"
 #include "sim/simulator.h"
 #include "tests/support/small_scenes.h"
 
@@ -40,20 +42,12 @@ struct Crossings {
 
 Crossings crossings(const Simulator& simulator) {
   const Scene& scene = simulator.scene();
-  std::vector<Triangle> faces;
-  std::vector<int> group;
-  Index first = 0, cloth_faces = 0;
-  const auto add = [&](const TriangleMesh& mesh, int g) {
-    for (const Triangle& t : mesh.faces)
-      faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-    group.resize(faces.size(), g);
-    first += static_cast<Index>(mesh.positions.size());
-  };
-  for (const Cloth& cloth : scene.cloths) add(cloth.mesh, 0);
-  cloth_faces = static_cast<Index>(faces.size());
-  for (const Obstacle& obstacle : scene.obstacles) add(obstacle.mesh, -1);
+  const SceneFaces soup = scene_faces(scene);
+  const auto cloth_faces = std::ranges::count_if(soup.group, [](int g) { return g >= 0; });
+
+  // The faces of the cloths come first, and a pair names the lower one first.
   Crossings found;
-  for (const auto& pair : find_intersections(simulator.snapshot().x1, faces, group))
+  for (const auto& pair : find_intersections(simulator.snapshot().x1, soup.faces, soup.group))
     ++(pair.b < cloth_faces ? found.cloth : found.bodies);
   return found;
 }

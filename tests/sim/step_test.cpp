@@ -7,7 +7,9 @@
 #include <limits>
 #include <optional>
 
+#include "kernels/index.h"
 #include "sim/scene/intersections.h"
+#include "sim/scene/scene_meshes.h"
 #include "sim/simulator.h"
 #include "tests/support/small_scenes.h"
 
@@ -18,8 +20,6 @@ using testing::hanging;
 using testing::lying;
 using testing::make_obstacle;
 using testing::make_sheet;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::shared_ptr<Scene> new_scene() {
   auto scene = std::make_shared<Scene>();
@@ -36,36 +36,18 @@ std::shared_ptr<Scene> ball_scene(Index triangles = 300) {
   return scene;
 }
 
-/// Faces of all objects, and a group number that leaves obstacle pairs out.
-struct Soup {
-  std::vector<Triangle> faces;
-  std::vector<int> group;
-
-  explicit Soup(const Scene& scene) {
-    Index first = 0;
-    const auto add = [&](const TriangleMesh& mesh, int g) {
-      for (const Triangle& t : mesh.faces) {
-        faces.push_back({t[0] + first, t[1] + first, t[2] + first});
-        group.push_back(g);
-      }
-      first += static_cast<Index>(mesh.positions.size());
-    };
-    for (const Cloth& cloth : scene.cloths) add(cloth.mesh, 0);
-    for (const Obstacle& obstacle : scene.obstacles) add(obstacle.mesh, -1);
-  }
-  std::size_t intersections(const Simulator& simulator) const {
-    return find_intersections(simulator.snapshot().x1, faces, group).size();
-  }
-};
+std::size_t count_intersections(const Simulator& simulator) {
+  const SceneFaces soup = scene_faces(simulator.scene());
+  return find_intersections(simulator.snapshot().x1, soup.faces, soup.group).size();
+}
 
 /// Steps that must be accepted, without a crossing pair of faces after any of them.
 void run_cleanly(Simulator& simulator, int steps) {
-  const Soup soup(simulator.scene());
   for (int k = 0; k < steps; ++k) {
     const StepReport report = simulator.step({});
     ASSERT_TRUE(report.accepted) << "step " << k;
     ASSERT_EQ(report.impacts_left, 0) << "step " << k;
-    ASSERT_EQ(soup.intersections(simulator), 0u) << "step " << k;
+    ASSERT_EQ(count_intersections(simulator), 0u) << "step " << k;
   }
 }
 
@@ -524,14 +506,13 @@ std::shared_ptr<Scene> pinned_scene() {
 
 TEST_P(Builds, ABodyPushedIntoPinsIsRefused) {
   const auto simulator = make(pinned_scene());
-  const Soup soup(simulator->scene());
   bool refused = false;
   for (int k = 0; k < 20 && !refused; ++k) {
     const Snapshot before = simulator->snapshot();
     const StepReport report = simulator->step({});
     refused = !report.accepted;
     EXPECT_EQ(report.no_room, refused);
-    EXPECT_EQ(soup.intersections(*simulator), 0u) << k;
+    EXPECT_EQ(count_intersections(*simulator), 0u) << k;
     EXPECT_TRUE(!refused || same_state(simulator->snapshot(), before));
   }
   ASSERT_TRUE(refused);
@@ -556,14 +537,13 @@ TEST_P(Builds, NumbersThatAreNotFiniteAreRefused) {
 
 TEST_P(Builds, HugeForcesNeverPullTheClothThroughABody) {
   const auto simulator = make(ball_scene(60));
-  const Soup soup(simulator->scene());
   Parameters huge = simulator->parameters();
   huge.gravity.y = -1e9;
   simulator->set_parameters(huge);
   const Snapshot before = simulator->snapshot();
   const StepReport report = simulator->step({});
   EXPECT_GT(report.substeps + report.retries, 10);
-  EXPECT_EQ(soup.intersections(*simulator), 0u);
+  EXPECT_EQ(count_intersections(*simulator), 0u);
   EXPECT_EQ(report.accepted, !same_state(simulator->snapshot(), before));
 }
 

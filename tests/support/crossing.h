@@ -4,12 +4,11 @@
 
 #include <vector>
 
+#include "kernels/index.h"
 #include "sim/collision/impact_zones.h"
 #include "tests/support/stage_support.h"
 
 namespace icloth::ICLOTH_BUILD {
-
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A millimetre in some direction for each vertex of a cloth; the same numbers in every build.
 inline std::vector<Vec3r> shaken(const Stage& stage, std::mt19937& random) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "kernels/index.h"
 #include "sim/scene/world.h"
 #include "sim/state/state.h"
 #include "tests/support/small_scenes.h"
@@ -71,7 +72,6 @@ inline std::vector<Vec3r> sum(std::vector<Vec3r> a, const std::vector<Vec3r>& b,
 }
 
 inline std::vector<Index> corners(const World& world, bool edge_edge, Index a, Index b) {
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   if (edge_edge)
     return {world.edge[at(a)][0], world.edge[at(a)][1], world.edge[at(b)][0], world.edge[at(b)][1]};
   const Triangle& f = world.face[at(b)];

@@ -14,6 +14,7 @@
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
+#include "sim/files/box.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 #include "sim/scene/intersections.h"
@@ -95,9 +96,8 @@ Camera camera_from_file(const std::string& path) {
 /// A camera that sees the whole start state from the front, slightly from above.
 Camera camera_on_everything(const World& world, double aspect) {
   Camera camera(CameraPose{"", {0.25, 0.22, 1}, {0, 0, 0}, {0, 1, 0}, 32});
-  Bounds bounds;
-  for (const Vec3d p : world.position) bounds.add(p);
-  camera.frame_box(bounds.low, bounds.high, aspect);
+  const Box box = box_around(world.position);
+  camera.frame_box(box.low, box.high, aspect);
   return camera;
 }
 

@@ -12,13 +12,12 @@
 #include <sstream>
 
 #include "kernels/ccd/elementary_ccd.h"
+#include "kernels/index.h"
 #include "sim/files/mesh_io.h"
 #include "sim/scene/shapes.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 struct Lists {
   std::set<std::array<Index, 2>> vertex_face;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/index.h"
 #include "tests/support/stage_support.h"
 
 namespace icloth::cpu64 {
@@ -37,7 +38,6 @@ std::vector<Contact> contacts_of(Stage& stage) {
 
 /// Area of the smaller feature of a contact between cloth and body.
 double feature_area(const World& world, const Contact& c) {
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   const Pair pair = key_pair(c.key);
   if (key_is_edge_edge(c.key)) return world.edge_area[at(pair.a)];
   return pair.a < world.cloth_vertices ? world.area[at(pair.a)] : world.face_area[at(pair.b)];

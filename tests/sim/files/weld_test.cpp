@@ -5,10 +5,10 @@
 
 #include <random>
 
+#include "kernels/index.h"
+
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Squares in a row whose neighbours have their own vertices on the common side, and vertices
 /// without a face in between.

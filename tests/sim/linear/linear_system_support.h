@@ -5,12 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/index.h"
 #include "sim/linear/incidence.h"
 #include "sim/linear/linear_solver.h"
 
 namespace icloth::cpu32 {
-
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 struct TestSystem {
   std::vector<Real> inverse_mass;

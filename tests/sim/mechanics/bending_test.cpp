@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "kernels/index.h"
 #include "sim/mechanics/bending_terms.h"
 #include "sim/mechanics/plates.h"
 #include "tests/sim/files/mesh_layouts.h"
@@ -20,8 +21,6 @@ namespace {
 
 using testing::kLayouts;
 using testing::Layout;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Every hinge has k_e = 4: the bending modulus D is 1.
 Fabric unit_fabric() {

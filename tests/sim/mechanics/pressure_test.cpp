@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "kernels/index.h"
 #include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 #include "tests/support/small_scenes.h"
@@ -17,8 +18,6 @@ namespace icloth::cpu64 {
 namespace {
 
 constexpr double kYoung = 1000, kPoisson = 0.3;  // of an isotropic fabric [N/m], -
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Cloth make_balloon(double radius, Index triangles) {
   Cloth cloth;

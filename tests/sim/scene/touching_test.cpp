@@ -8,14 +8,13 @@
 #include <set>
 
 #include "kernels/distance.h"
+#include "kernels/index.h"
 #include "sim/scene/intersections.h"
 #include "sim/simulator.h"
 #include "tests/support/small_scenes.h"
 
 namespace icloth {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::vector<Touch> touches_of(const std::vector<Vec3d>& x, const std::vector<Triangle>& faces) {
   return find_touching_neighbours(x, faces, {});

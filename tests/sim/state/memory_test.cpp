@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
@@ -22,8 +23,6 @@ using testing::make_obstacle;
 using testing::make_sheet;
 
 constexpr std::size_t kHead = 20, kTail = 8;  // of the bytes, around the payload
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 // ---- a memory as bytes -------------------------------------------------------------------------
 
