@@ -1,6 +1,7 @@
 #include "sim/scene/repair_hulls.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "kernels/index.h"
@@ -12,8 +13,7 @@ constexpr std::size_t kMostSegments = 12;  ///< longer contours bend around each
 
 std::vector<Index> sorted(std::vector<Index> list) {
   std::ranges::sort(list);
-  const auto rest = std::ranges::unique(list);
-  list.erase(rest.begin(), rest.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
 }
 
@@ -54,7 +54,8 @@ struct Separation {
 };
 
 Separation separate_hulls(const RepairMesh& mesh, const Contour& contour) {
-  const auto [own, other] = patches(mesh, contour);
+  const std::array<Patch, 2> both = patches(mesh, contour);
+  const Patch &own = both[0], &other = both[1];
   std::vector<Index> common;
   std::ranges::set_intersection(own.vertices, other.vertices, std::back_inserter(common));
   const auto is_free = [&](Index v) { return mesh.is_free(v); };

@@ -31,8 +31,7 @@ std::vector<BorderEdge> border_near(const RepairMesh& mesh, const Contour& conto
         for (const Index e : mesh.face_edges[at(f)])
           if (is_border(mesh, e)) edges.push_back(e);
   std::ranges::sort(edges);
-  const auto rest = std::ranges::unique(edges);
-  edges.erase(rest.begin(), rest.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
   // Across an edge is what a side of the face leaves over of its direction along the edge.
   std::vector<BorderEdge> border;
