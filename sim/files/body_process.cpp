@@ -140,6 +140,8 @@ std::string reason_of(int status, const ProcessLimits& limits) {
 
 }  // namespace
 
+bool limits_memory() { return !kSanitized; }
+
 ProcessLimits limits_for(std::uint64_t file_bytes) {
   const std::uint64_t slow = kSanitized ? 10 : 1;
   return {.memory = 640 * kMegabyte + 40 * file_bytes,
@@ -172,7 +174,7 @@ void enter_limits(const ProcessLimits& limits) {
   lower_limit(RLIMIT_FSIZE, 0);  // it writes to the pipe alone
   lower_limit(RLIMIT_STACK, kStack);
   lower_limit(RLIMIT_CPU, limits.seconds);
-  if (!kSanitized) lower_limit(RLIMIT_AS, mapped_bytes() + limits.memory);
+  if (limits_memory()) lower_limit(RLIMIT_AS, mapped_bytes() + limits.memory);
 }
 
 bool send_result(std::string_view bytes) {

@@ -17,6 +17,10 @@ struct ProcessLimits {
 /// grows with the file.
 ProcessLimits limits_for(std::uint64_t file_bytes);
 
+/// False in builds with sanitizers, which reserve terabytes of address space: there a child may
+/// take any amount of memory.
+bool limits_memory();
+
 /// How the child ended, and what it sent.
 struct ProcessResult {
   std::string bytes;    ///< all that it sent; meaningful where `failure` is empty
