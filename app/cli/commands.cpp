@@ -13,6 +13,7 @@
 #include "app/cli/commands/render.h"
 #include "app/cli/commands/replay.h"
 #include "app/cli/commands/run.h"
+#include "app/cli/commands/sew.h"
 #include "app/cli/commands/view.h"
 #include "app/common/command_options.h"
 #include "app/common/machine.h"
@@ -27,7 +28,7 @@ namespace icloth {
 namespace {
 
 constexpr std::string_view kCommands[] = {"view", "run",    "render", "bench", "replay",
-                                          "ccd",  "detect", "check",  "info"};
+                                          "ccd",  "detect", "check",  "sew",   "info"};
 
 int print_keys() {
   std::fputs(bindings_markdown().c_str(), stdout);
@@ -46,6 +47,7 @@ struct Commands {
   ReplayOptions replay;
   CheckOptions check;
   DetectOptions detect;
+  SewOptions sew;
   std::string ccd_queries, ccd_predictions;
   bool list_keys = false;
 
@@ -60,6 +62,7 @@ struct Commands {
   void add_ccd();
   void add_detect();
   void add_check();
+  void add_sew();
   void add_info();
 };
 
@@ -197,6 +200,23 @@ void Commands::add_check() {
   command->add_option("--list", check.list, "pairs that are printed")->capture_default_str();
 }
 
+void Commands::add_sew() {
+  CLI::App* command =
+      add_command("sew", "sew a pattern and put it on a body", [this] { return run_sew(sew); });
+  command->add_option("PATTERN", sew.pattern, "NAME_specification.json of GarmentCode")->required();
+  command->add_option("--body", sew.body, "mesh that the garment is put on");
+  command->add_option("--triangles", sew.triangles, "wanted number")
+      ->check(CLI::Range(2, 4000000))
+      ->capture_default_str();
+  command->add_option("--out", sew.out, "OBJ of the garment, its uv the pattern in metres");
+  command->add_option("--material", sew.material, "name or file of the fabric")
+      ->capture_default_str();
+  command->add_option("--threads", sew.threads, "threads")->check(CLI::Range(1, 4096));
+  command->add_flag("--report", sew.report, "print panels, stitches, and how dressing went");
+  command->add_flag("!--no-dress", sew.dress, "write the garment as it is sewn");
+  command->add_flag("--quiet", sew.quiet, "print errors only");
+}
+
 void Commands::add_info() {
   CLI::App* command = add_command("info", "version, machine, builds, renderer",
                                   [this] { return list_keys ? print_keys() : run_info(); });
@@ -215,6 +235,7 @@ Commands::Commands() {
   add_ccd();
   add_detect();
   add_check();
+  add_sew();
   add_info();
 }
 

@@ -3,6 +3,7 @@
 #include "kernels/distance.h"
 #include "kernels/parallel/parallel.h"
 #include "kernels/parallel/partition_point.h"
+#include "sim/collision/rest_gap.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -13,7 +14,8 @@ constexpr double kLineLoad = 1;
 
 /// The data and the part of the search that vertex–face and edge–edge pairs share.
 struct ContactMaker {
-  View<const Vec3r> x, v, rest;
+  View<const Vec3r> x, v;
+  RestGap rest_gap;
   View<const Real> inverse_mass;
   View<const Index> object;
   Index cloth_vertices;
@@ -117,7 +119,7 @@ struct ContactMaker {
     bool same_cloth = true;
     for (const Index i : s.v)
       same_cloth = same_cloth && i < cloth_vertices && object[i] == object[s.v[0]];
-    return same_cloth && norm2(apply(s, rest)) < 4 * thickness * thickness;
+    return same_cloth && rest_gap.norm2_of(s) < 4 * thickness * thickness;
   }
 
   /// Fills the contact of a stencil; false when the pair does not repel in this step. `across` is
@@ -140,7 +142,10 @@ ContactMaker contact_maker(const SubstepContext& step, const LetGoView& let_go) 
   const ProximityParameters& p = step.parameters.proximity;
   return {.x = s.x0.view(),
           .v = s.v.view(),
-          .rest = mesh.rest.view(),
+          .rest_gap = {.rest = mesh.rest.view(),
+                       .panel = mesh.rest_panel.view(),
+                       .seam_first = mesh.seam_first.view(),
+                       .seam = mesh.seam.view()},
           .inverse_mass = s.inverse_mass.view(),
           .object = mesh.object.view(),
           .cloth_vertices = mesh.cloth_vertices,

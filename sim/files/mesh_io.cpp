@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <map>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -125,6 +127,43 @@ void write_obj(const std::string& path, std::span<const NamedMesh> objects,
     first += object.positions.size();
   }
   write_file(path, text);
+}
+
+void write_cloth_obj(const std::string& path, const TriangleMesh& mesh,
+                     std::span<const Index> piece, std::span<const std::string> names,
+                     const std::string& comment) {
+  std::string text = "# " + comment + "\n";
+  char line[120];
+  for (Vec3d p : mesh.positions) {
+    std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x, p.y, p.z);
+    text += line;
+  }
+
+  // A place of the pattern that several corners have is written once.
+  std::map<std::array<double, 2>, std::size_t> number;
+  const auto number_of = [&](Vec2d uv) {
+    const auto [entry, is_new] = number.try_emplace({uv.x, uv.y}, number.size() + 1);
+    if (is_new) {
+      std::snprintf(line, sizeof line, "vt %.12g %.12g\n", uv.x, uv.y);
+      text += line;
+    }
+    return entry->second;
+  };
+
+  std::string faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (f == 0 || piece[f] != piece[f - 1])
+      faces += "g " + names[static_cast<std::size_t>(piece[f])] + "\n";
+    faces += 'f';
+    for (std::size_t c = 0; c < 3; ++c) {
+      faces += ' ';
+      append_index(faces, static_cast<std::size_t>(mesh.faces[f][c]) + 1);
+      faces += '/';
+      append_index(faces, number_of(mesh.uv[f][c]));
+    }
+    faces += '\n';
+  }
+  write_file(path, text + faces);
 }
 
 }  // namespace icloth

@@ -71,4 +71,10 @@ struct NamedMesh {
 void write_obj(const std::string& path, std::span<const NamedMesh> objects,
                const std::string& comment = "");
 
+/// A cloth with material coordinates: `v` with 9 significant digits, `vt` with 12 in metres, one
+/// group for each run of faces of one piece. `piece` (F) are numbers in `names`.
+void write_cloth_obj(const std::string& path, const TriangleMesh& mesh,
+                     std::span<const Index> piece, std::span<const std::string> names,
+                     const std::string& comment);
+
 }  // namespace icloth

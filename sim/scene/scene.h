@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/files/mesh.h"
+#include "sim/scene/garment.h"
 #include "sim/scene/material.h"
 #include "sim/scene/parameters.h"
 
@@ -15,6 +16,9 @@ struct Cloth {
   std::string name;
   TriangleMesh mesh;        ///< start state
   std::vector<Vec3d> rest;  ///< rest positions [m] (V), the start state's where none were given
+  /// The rest shape is the material space, mesh.uv in metres, in place of `rest`. Panels that are
+  /// sewn together have no rest shape in space.
+  bool rest_in_uv = false;
   Material material;
   bool flat_angles = false;  ///< rest angles are 0, whatever folds the rest shape has
   std::vector<Index> pins;   ///< vertices held where they start
@@ -78,6 +82,7 @@ struct Scene {
   double duration = 10;   ///< [s]
   Parameters parameters;  ///< defaults overlaid with the scene's own
   std::vector<Cloth> cloths;
+  std::vector<Garment> garments;  ///< what is known of the cloths that are sewn, in their order
   std::vector<Obstacle> obstacles;
   std::vector<ScriptedGrab> input;
   std::vector<CameraPose> cameras;

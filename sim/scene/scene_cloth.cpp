@@ -8,6 +8,7 @@
 #include "sim/files/text.h"
 #include "sim/scene/cloth_mesh.h"
 #include "sim/scene/material_io.h"
+#include "sim/scene/material_space.h"
 #include "sim/scene/scene_json.h"
 #include "sim/scene/transforms.h"
 
@@ -16,23 +17,6 @@ namespace {
 
 constexpr Index kDefaultTriangles = 2000;
 constexpr int kMaxSubdivisions = 6;
-
-/// Texture coordinates are no material coordinates: kept only where they have the rest shape's
-/// size.
-bool is_material_space(const std::vector<std::array<Vec2d, 3>>& uv, const std::vector<Vec3d>& rest,
-                       const std::vector<Triangle>& faces) {
-  double uv_area = 0, rest_area = 0;
-  for (std::size_t f = 0; f < uv.size(); ++f) {
-    const auto at = [&](std::size_t c) { return rest[static_cast<std::size_t>(faces[f][c])]; };
-    const Vec2d a = uv[f][1] - uv[f][0], b = uv[f][2] - uv[f][0];
-    const double area = (a.x * b.y - a.y * b.x) / 2;
-    const double real = norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
-    if (area < 0.5 * real || area > 2 * real) return false;
-    uv_area += area;
-    rest_area += real;
-  }
-  return std::abs(uv_area - rest_area) < 0.1 * rest_area;
-}
 
 /// A distance in metres; 0 or true: exact doubles alone, false: nothing is welded.
 WeldChoice parse_weld(const JsonValue& value) {
@@ -50,12 +34,79 @@ WeldChoice parse_weld(const JsonValue& value) {
   return choice;
 }
 
-/// Reads the mesh of a cloth and its rest shape, a second mesh of the same topology.
+/// Metres for one unit of the texture coordinates that are a rest shape.
+double parse_uv_scale(JsonObject& object) {
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  constexpr Unit kUnits[] = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}};
+
+  if (object.has("uv_scale")) {
+    if (object.has("uv_unit")) object["uv_unit"].refuse("either \"uv_unit\" or \"uv_scale\"");
+    return object["uv_scale"].number({1e-6, 1e6});
+  }
+  if (!object.has("uv_unit")) return 1;
+  const std::string& unit = object["uv_unit"].text();
+  for (const Unit& known : kUnits)
+    if (unit == known.name) return known.metres;
+  object["uv_unit"].refuse("\"m\", \"cm\" or \"mm\"");
+}
+
+/// Whether the rest shape is the texture coordinates.
+bool rests_in_uv(JsonObject& object) {
+  const bool in_uv = object.has("rest") && object["rest"].text() == "uv";
+  for (const char* key : {"uv_unit", "uv_scale"})
+    if (!in_uv && object.has(key)) object[key].refuse("no such key: only with \"rest\": \"uv\"");
+  return in_uv;
+}
+
+/// Makes the texture coordinates of a mesh file, in metres and with their face up, its rest shape.
+void take_rest_from_uv(JsonObject& object, Cloth& cloth) {
+  if (cloth.mesh.uv.empty())
+    object["rest"].refuse("a mesh with texture coordinates at every corner of its faces");
+  const double scale = parse_uv_scale(object);
+  for (auto& corners : cloth.mesh.uv)
+    for (Vec2d& corner : corners) corner = scale * corner;
+
+  // Pieces that are cut from mirrored patterns are turned over, and single faces are not.
+  turn_mirrored_panels(cloth.mesh);
+  const std::string problem = rest_shape_problem(cloth.mesh);
+  if (!problem.empty()) object["rest"].refuse("texture coordinates that lie flat: " + problem);
+  cloth.rest_in_uv = true;
+}
+
+/// Says when a pattern and its mesh are so different in size that the unit is probably another.
+void note_uv_size(const SceneFolder& folder, const Cloth& cloth) {
+  constexpr double kUsualShare = 4;  // garments are stretched or folded by less than this
+  const double share = material_share(cloth.mesh, cloth.mesh.positions);
+  if (share < 1 / kUsualShare || share > kUsualShare)
+    folder.note("cloth " + in_quotes(cloth.name) + ": its area in uv is " + rounded_text(share) +
+                " times that of the mesh: are its texture coordinates in metres? \"uv_unit\" and "
+                "\"uv_scale\" change their size");
+}
+
+/// Keeps texture coordinates as material coordinates where they have the size of the rest shape,
+/// and says why where they have not.
+void judge_uv(const SceneFolder& folder, Cloth& cloth) {
+  if (cloth.mesh.uv.empty()) return;
+  turn_mirrored_panels(cloth.mesh);
+  const std::string problem = size_problem(cloth.mesh, cloth.rest);
+  if (problem.empty()) return;
+  folder.note("cloth " + in_quotes(cloth.name) +
+              ": the texture coordinates are not used as material coordinates: " + problem +
+              "; where they are a flat pattern, \"rest\": \"uv\" takes them as the rest shape");
+  cloth.mesh.uv.clear();
+}
+
+/// Reads the mesh of a cloth and its rest shape, a second mesh of the same topology or its texture
+/// coordinates.
 void read_shapes(JsonObject& object, const SceneFolder& folder, Cloth& cloth) {
   MeshFile file = read_mesh(find_asset(object["mesh"].text(), folder.path));
 
   // The material coordinates of the rest shape win over those of the mesh.
-  if (object.has("rest")) {
+  const bool in_uv = rests_in_uv(object);
+  if (object.has("rest") && !in_uv) {
     MeshFile rest = read_mesh(find_asset(object["rest"].text(), folder.path));
     if (!same_faces(file, rest))
       object["rest"].refuse("a mesh with the same vertices and faces as \"mesh\"");
@@ -97,6 +148,11 @@ void read_cloth_mesh(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   const std::string file = shown_path(object["mesh"].text());
   check_cloth_mesh(cloth.mesh, file);
   check_cloth_mesh({cloth.rest, cloth.mesh.faces, {}}, file + " (rest shape)");
+  if (rests_in_uv(object)) {
+    take_rest_from_uv(object, cloth);
+  } else {
+    judge_uv(folder, cloth);
+  }
 
   // Every change of the mesh that users should know of is noted.
   ClothMeshOptions options = parse_mesh_options(object, folder, cloth.mesh.faces.size());
@@ -120,7 +176,7 @@ void make_cloth_grid(JsonObject& object, const SceneFolder& folder, LoadedCloth&
   mesh.finish();
 
   // Keys that change a mesh file make no sense for a grid, which is made as it is wanted.
-  for (const char* key : {"rest", "subdivide", "weld"})
+  for (const char* key : {"rest", "uv_unit", "uv_scale", "subdivide", "weld"})
     if (object.has(key))
       object[key].refuse("no such key: only for mesh files, a grid is flat at rest");
   loaded.grid = make_grid(shape);
@@ -137,17 +193,16 @@ Vec3d place_cloth(JsonObject& object, LoadedCloth& loaded) {
     const Vec3d s = scale = place.scale;
 
     // Positions are placed, whereas the rest shape and the material space only change their size.
-    if (!cloth.mesh.uv.empty() && (s.x != s.y || s.y != s.z))
+    // A pattern has its own unit, and keeps its size.
+    if (!cloth.rest_in_uv && !cloth.mesh.uv.empty() && (s.x != s.y || s.y != s.z))
       object["transform"].refuse("one scale for all axes on a cloth with material coordinates");
     for (Vec3d& p : cloth.mesh.positions) p = place(p);
     for (Vec3d& p : loaded.layout.positions) p = place(p);
     for (Vec3d& p : cloth.rest) p = {s.x * p.x, s.y * p.y, s.z * p.z};
-    for (auto& corners : cloth.mesh.uv)
-      for (Vec2d& corner : corners) corner = s.x * corner;
+    if (!cloth.rest_in_uv)
+      for (auto& corners : cloth.mesh.uv)
+        for (Vec2d& corner : corners) corner = s.x * corner;
   }
-
-  if (!loaded.grid && !is_material_space(cloth.mesh.uv, cloth.rest, cloth.mesh.faces))
-    cloth.mesh.uv.clear();
   return scale;
 }
 
@@ -202,9 +257,11 @@ double total_grid_triangles(const nlohmann::json& scene) {
   for (const auto& cloth : scene["cloths"]) {
     const bool is_grid = cloth.is_object() && cloth.contains("mesh") && cloth["mesh"].is_object() &&
                          cloth["mesh"].contains("grid");
-    if (!is_grid) continue;
+    const bool is_sewn = cloth.is_object() && cloth.contains("pattern");
+    if (!is_grid && !is_sewn) continue;
     const bool chosen = cloth.contains("triangles") && cloth["triangles"].is_number();
-    total += chosen ? std::max(cloth["triangles"].get<double>(), 0.0) : kDefaultTriangles;
+    const double usual = is_sewn ? kPatternTriangles : kDefaultTriangles;
+    total += chosen ? std::max(cloth["triangles"].get<double>(), 0.0) : usual;
   }
   return total;
 }
@@ -214,21 +271,29 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   LoadedCloth loaded;
   loaded.cloth.name = object.text("name", "cloth" + std::to_string(number));
 
-  // A file or a grid gives the mesh before its transform, with the rest shape beside it.
-  const JsonValue mesh = object.required("mesh");
-  if (mesh.json().is_string()) {
-    read_cloth_mesh(object, folder, loaded);
+  // A pattern, a file or a grid gives the mesh before its transform, with the rest shape beside it.
+  Vec3d scale{1, 1, 1};
+  if (object.has("pattern")) {
+    sew_cloth(object, folder, loaded);
   } else {
-    make_cloth_grid(object, folder, loaded);
+    for (const char* key : {"dress", "on", "layer"})
+      if (object.has(key)) object[key].refuse("no such key: only with \"pattern\"");
+    if (object.required("mesh").json().is_string()) {
+      read_cloth_mesh(object, folder, loaded);
+    } else {
+      make_cloth_grid(object, folder, loaded);
+    }
+    scale = place_cloth(object, loaded);
   }
-  const Vec3d scale = place_cloth(object, loaded);
 
   // Mesh files hold no unit, so sizes that garments do not have get a note.
-  if (!loaded.grid) {
+  if (!loaded.grid && !loaded.garment) {
     const std::string note =
         unit_note("cloth '" + loaded.cloth.name + "'", loaded.cloth.mesh.positions, scale, true);
     if (!note.empty()) folder.note(note);
   }
+
+  if (loaded.cloth.rest_in_uv && !loaded.garment) note_uv_size(folder, loaded.cloth);
 
   // Pins follow the transform, since their boxes are given in the coordinates of the scene.
   if (object.has("pins")) parse_pins(object["pins"], loaded);
@@ -241,6 +306,8 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   if (object.has("rest_angles")) {
     const std::string& angles = object["rest_angles"].text();
     if (angles != "mesh" && angles != "flat") object["rest_angles"].refuse("\"mesh\" or \"flat\"");
+    if (angles == "mesh" && loaded.cloth.rest_in_uv)
+      object["rest_angles"].refuse("\"flat\": a rest shape in uv has no folds");
     loaded.cloth.flat_angles = angles == "flat";
   }
   loaded.cloth.friction = parse_friction(object);

@@ -19,6 +19,7 @@
 #include "sim/scene/repair.h"
 #include "sim/scene/scene_json.h"
 #include "sim/scene/scene_meshes.h"
+#include "sim/scene/world.h"
 
 namespace icloth {
 namespace {
@@ -74,21 +75,8 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
 /// Median of the edges at rest, since those of a stretched or bent start pose have other lengths.
 double median_edge(const Scene& scene) {
   std::vector<double> lengths;
-  for (const Cloth& cloth : scene.cloths) add_side_lengths(cloth.mesh.faces, cloth.rest, lengths);
+  for (const Cloth& cloth : scene.cloths) add_rest_lengths(cloth, lengths);
   return median(std::move(lengths));
-}
-
-/// Neighbours repel each other in the plane when the thickness is large against the edges: above
-/// 0.3 edges for the repulsion, 0.05 for the impact offset. Used where the scene's own numbers
-/// were made for another mesh.
-void fit_thickness(Scene& scene) {
-  const double edge = median_edge(scene);
-  if (!(edge > 0)) return;
-  Parameters& p = scene.parameters;
-  p.proximity.thickness = std::max(std::min(p.proximity.thickness, 0.3 * edge),
-                                   find_parameter("proximity.thickness")->minimum);
-  p.impact_zones.offset = std::max(std::min(p.impact_zones.offset, 0.05 * edge),
-                                   find_parameter("impact_zones.offset")->minimum);
 }
 
 void hang_by_highest(Cloth& cloth) {
@@ -185,11 +173,13 @@ FileScene scene_of_json(const std::string& argument, double triangles, const Sce
   const nlohmann::json json = read_json(path);
   SceneFolder folder{fs::path(path).parent_path().string(), 1, limits, nullptr};
 
-  // The number of triangles is that of all grids together, which keep their proportions.
+  // The number of triangles is that of all grids and patterns together, which keep their
+  // proportions.
   if (triangles > 0) {
     const double own = total_grid_triangles(json);
     if (!(own > 0))
-      throw InputError(shown_path(path) + ": --set triangles: no cloth of the scene is a grid");
+      throw InputError(shown_path(path) +
+                       ": --set triangles: no cloth of the scene is a grid or a pattern");
     folder.triangle_scale = triangles / own;
   }
   const AirSettings air{.drag = sets_parameter(json, "wind", "air_drag"),
@@ -207,7 +197,8 @@ FileScene read_scene(const std::string& argument, double triangles, const SceneL
   file.scene.source = argument;
 
   // Thicknesses that a scene gives for its own mesh do not suit a coarser or finer one.
-  if (is_mesh || triangles > 0) fit_thickness(file.scene);
+  // The mesh of a pattern is made here, so a scene has no numbers for it.
+  if (is_mesh || triangles > 0 || !file.scene.garments.empty()) fit_thickness(file.scene);
   return file;
 }
 
@@ -234,6 +225,16 @@ void still_air_without_drag(FileScene& file, SceneOrigin& origin) {
 }
 
 }  // namespace
+
+void fit_thickness(Scene& scene) {
+  const double edge = median_edge(scene);
+  if (!(edge > 0)) return;
+  Parameters& p = scene.parameters;
+  p.proximity.thickness = std::max(std::min(p.proximity.thickness, 0.3 * edge),
+                                   find_parameter("proximity.thickness")->minimum);
+  p.impact_zones.offset = std::max(std::min(p.impact_zones.offset, 0.05 * edge),
+                                   find_parameter("impact_zones.offset")->minimum);
+}
 
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,

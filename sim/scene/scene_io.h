@@ -33,4 +33,8 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         const SceneLimits& limits = {},
                                         SceneOrigin* origin = nullptr);
 
+/// Lowers the contact thickness and the impact offset to what the edges at rest allow: neighbours
+/// repel each other in the plane above 0.3 and 0.05 edges.
+void fit_thickness(Scene& scene);
+
 }  // namespace icloth

@@ -296,6 +296,10 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   if (cloths.empty()) object["cloths"].refuse("at least one cloth");
 
   for (LoadedCloth& loaded : cloths) {
+    if (loaded.garment) {
+      loaded.garment->cloth = static_cast<Index>(scene.cloths.size());
+      scene.garments.push_back(std::move(*loaded.garment));
+    }
     scene.cloths.push_back(std::move(loaded.cloth));
     origin.layouts.push_back(std::move(loaded.layout));
   }

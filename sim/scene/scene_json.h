@@ -16,6 +16,7 @@ struct LoadedCloth {
   Cloth cloth;
   FileLayout layout;  ///< of its mesh file
   std::optional<GridMesh> grid;
+  std::optional<Garment> garment;  ///< where it is sewn from a pattern
 };
 
 struct SceneFolder {
@@ -48,8 +49,13 @@ std::optional<double> parse_friction(JsonObject& object);
 /// Refuses a key of the format that this version does not act on.
 void refuse_feature(JsonObject& object, std::string_view key, const std::string& instead);
 
-/// Sum of the wanted triangles of all grids; ill-formed entries count as none.
+/// Sum of the wanted triangles of all grids and patterns; ill-formed entries count as none.
 double total_grid_triangles(const nlohmann::json& scene);
+
+/// Sews a cloth from its pattern: "pattern", "triangles", "dress", "on", "layer", "transform".
+void sew_cloth(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded);
+/// Triangles of a cloth that is sewn and does not say how many.
+inline constexpr double kPatternTriangles = 4000;
 
 LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number);
 Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t number);

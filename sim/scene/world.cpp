@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
 #include "sim/scene/edge_lengths.h"
+#include "sim/scene/material_space.h"
 
 namespace icloth {
 namespace {
@@ -20,8 +22,6 @@ struct HalfEdge {
   Index face;
   Index corner;  // the edge runs from this corner of the face to the next
 };
-
-double cross2(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 
 std::string element(const Cloth& cloth, const char* kind, std::size_t number) {
   return "cloth " + in_quotes(cloth.name) + ", " + kind + " " + std::to_string(number);
@@ -36,7 +36,7 @@ double rest_area(const Cloth& cloth, const Triangle& t) {
   return 0.5 * norm(cross(x[at(t[1])] - x[at(t[0])], x[at(t[2])] - x[at(t[0])]));
 }
 
-double uv_area(const Corners& u) { return 0.5 * std::fabs(cross2(u[1] - u[0], u[2] - u[0])); }
+double uv_area(const Corners& u) { return 0.5 * std::fabs(doubled_material_area(u)); }
 
 /// A comparison with NaN is false: what is not finite would slip through every test there is.
 void check_finite(const std::string& object, const std::vector<Vec3d>& positions) {
@@ -60,6 +60,9 @@ void check_cloth(const Cloth& cloth) {
     throw InputError("cloth " + in_quotes(cloth.name) + ": uv of " +
                      std::to_string(cloth.mesh.uv.size()) + " faces, expected " +
                      std::to_string(cloth.mesh.faces.size()));
+  if (cloth.rest_in_uv && cloth.mesh.uv.empty())
+    throw InputError("cloth " + in_quotes(cloth.name) +
+                     ": the rest shape is in uv, expected texture coordinates of every face");
 
   // Positions must be numbers, and indices must refer to vertices.
   check_finite("cloth " + in_quotes(cloth.name), cloth.mesh.positions);
@@ -78,6 +81,7 @@ void check_cloth(const Cloth& cloth) {
 
 /// Texture coordinates that are not in metres (the unit square, say) tell the weft direction only.
 bool uv_is_metric(const Cloth& cloth) {
+  if (cloth.rest_in_uv) return true;
   double flat = 0, rest = 0;
   for (std::size_t f = 0; f < cloth.mesh.uv.size(); ++f) {
     flat += uv_area(cloth.mesh.uv[f]);
@@ -92,7 +96,7 @@ Vec3d weft_direction(const Cloth& cloth, std::size_t f, const std::array<Vec3d, 
     // Weft is the direction in which v stays and u grows.
     const Corners& u = cloth.mesh.uv[f];
     const Vec2d a = u[1] - u[0], b = u[2] - u[0];
-    const double det = cross2(a, b);
+    const double det = doubled_material_area(u);
     if (det != 0) return (1 / det) * (b.y * (x[1] - x[0]) - a.y * (x[2] - x[0]));
   }
   // Within 6° of the x axis the projection is mostly noise.
@@ -167,11 +171,27 @@ void append_object(World& world, const std::string& name, bool cloth, std::size_
   world.objects.push_back(std::move(object));
 }
 
+/// Where the vertices of a cloth lie at rest: in space, or flat in the pattern.
+void append_rest_places(World& world, const Cloth& cloth) {
+  if (!cloth.rest_in_uv) {
+    const auto& rest = rest_positions(cloth);
+    world.rest.insert(world.rest.end(), rest.begin(), rest.end());
+    return;
+  }
+
+  // A vertex on a seam lies at several places, of which the last one stands here; distances at rest
+  // are not taken from it (RestDistances).
+  std::vector<Vec3d> flat(cloth.mesh.positions.size());
+  for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
+    for (std::size_t c = 0; c < 3; ++c)
+      flat[at(cloth.mesh.faces[f][c])] = {cloth.mesh.uv[f][c].x, cloth.mesh.uv[f][c].y, 0};
+  world.rest.insert(world.rest.end(), flat.begin(), flat.end());
+}
+
 /// Areas, masses and material frames of a cloth that was appended last.
 void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corners>& corners) {
   const WorldObject& object = world.objects.back();
-  const auto& rest = rest_positions(cloth);
-  world.rest.insert(world.rest.end(), rest.begin(), rest.end());
+  append_rest_places(world, cloth);
 
   // Vertices gather their shares from the faces around them.
   world.area.resize(at(world.vertices), 0.0);
@@ -182,8 +202,10 @@ void append_rest_state(World& world, const Cloth& cloth, const std::vector<Corne
   // and in space.
   for (std::size_t f = 0; f < corners.size(); ++f) {
     const Vec2d a = corners[f][1] - corners[f][0], b = corners[f][2] - corners[f][0];
-    const double det = cross2(a, b), area = 0.5 * std::fabs(det);
-    if (!(area >= kSmallestArea && rest_area(cloth, cloth.mesh.faces[f]) >= kSmallestArea))
+    const double det = doubled_material_area(corners[f]), area = 0.5 * std::fabs(det);
+    const bool in_space =
+        cloth.rest_in_uv || rest_area(cloth, cloth.mesh.faces[f]) >= kSmallestArea;
+    if (!(area >= kSmallestArea && in_space))
       throw InputError(element(cloth, "face", f) + ": rest area " + number_text(area) +
                        " m², expected more than 1e-12");
     world.face_area.push_back(area);
@@ -228,20 +250,34 @@ Hinge make_hinge(const World& world, const WorldObject& object, const std::vecto
 
   // A seam joins two places of the pattern: its flaps were never one flat piece, and the fold of
   // the given shape is not a rest shape of theirs.
-  const bool same_way = face1[j] == face0[i];
-  const Vec2d start = u1[same_way ? j : (j + 1) % 3] - u0[i];
-  const Vec2d end = u1[same_way ? (j + 1) % 3 : j] - u0[(i + 1) % 3];
-  const double gap = std::hypot(start.x, start.y) + std::hypot(end.x, end.y);
-  const bool seam = has_uv && gap > 1e-3 * hinge.rest_length;
+  const bool seam = has_uv && !joined_in_material(u0, i, u1, j, face1[j] == face0[i]);
   hinge.rest_angle = seam || flat ? 0.0 : rest_angle(world.rest, hinge.vertices);
   return hinge;
 }
 
-/// Edges of an object; for a cloth also its hinges, one for every two faces of an edge.
+/// Length at rest of an edge, given by the sides of its faces; those of a gathered seam differ, and
+/// count with their mean.
+double rest_length(const World& world, const WorldObject& object, const Cloth& cloth,
+                   std::span<const HalfEdge> sides) {
+  if (!cloth.rest_in_uv)
+    return norm(world.rest[at(sides[0].edge[1])] - world.rest[at(sides[0].edge[0])]);
+
+  double sum = 0;
+  for (const HalfEdge& side : sides) {
+    const Corners& u = cloth.mesh.uv[at(side.face - object.first_face)];
+    const Vec2d edge = u[at((side.corner + 1) % 3)] - u[at(side.corner)];
+    sum += std::hypot(edge.x, edge.y);
+  }
+  return sum / static_cast<double>(sides.size());
+}
+
+/// Edges of an object; for a cloth also its hinges, one for every two faces of an edge, and the
+/// lengths at rest of its edges.
 void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
-                  const std::vector<Corners>& corners) {
+                  const std::vector<Corners>& corners, std::vector<double>& lengths) {
   const std::vector<HalfEdge> half_edges = sorted_half_edges(world, object);
   const bool metric_uv = cloth && uv_is_metric(*cloth);
+  const bool flat = cloth && (cloth->flat_angles || cloth->rest_in_uv);
   for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
     while (end < half_edges.size() && half_edges[end].edge == half_edges[begin].edge) ++end;
     world.edge.push_back(half_edges[begin].edge);
@@ -254,14 +290,17 @@ void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
                        std::to_string(end - begin) + " faces, expected at most " +
                        std::to_string(kMostFacesOnEdge));
 
+    const std::span<const HalfEdge> sides(half_edges.data() + begin, end - begin);
+    lengths.push_back(rest_length(world, object, *cloth, sides));
+
     // Every two faces of an edge bend against each other. The weights of all pairs that one face
     // belongs to sum up to 1.
     double area = 0;
     for (std::size_t i = begin; i < end; ++i) {
       area += world.face_area[at(half_edges[i].face)];
       for (std::size_t j = i + 1; j < end; ++j) {
-        world.hinges.push_back(make_hinge(world, object, corners, metric_uv, cloth->flat_angles,
-                                          half_edges[i], half_edges[j]));
+        world.hinges.push_back(
+            make_hinge(world, object, corners, metric_uv, flat, half_edges[i], half_edges[j]));
         world.hinges.back().weight = 1.0 / static_cast<double>(end - begin - 1);
       }
     }
@@ -270,26 +309,58 @@ void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
   world.edges = static_cast<Index>(world.edge.size());
 }
 
-double median_edge_length(const World& world) {
-  std::vector<double> lengths;
-  lengths.reserve(at(world.cloth_edges));
-  for (std::size_t e = 0; e < at(world.cloth_edges); ++e)
-    lengths.push_back(norm(world.rest[at(world.edge[e][1])] - world.rest[at(world.edge[e][0])]));
-  return median(std::move(lengths));
+/// Distances at rest of all cloths, where any of them is sewn of panels; a scene without has none.
+void append_rest_distances(World& world, const Scene& scene) {
+  const auto sewn = [](const Cloth& cloth) { return cloth.rest_in_uv; };
+  if (std::ranges::none_of(scene.cloths, sewn)) return;
+  RestDistances& all = world.rest_distances;
+  Index panels = 0;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const Cloth& cloth = scene.cloths[c];
+    const auto vertices = cloth.mesh.positions.size();
+    const auto before = static_cast<Index>(all.distances.size());
+
+    // A cloth that is at rest in space counts as one panel.
+    if (!sewn(cloth)) {
+      all.panel.resize(all.panel.size() + vertices, panels++);
+      all.first.resize(all.first.size() + vertices, before);
+      continue;
+    }
+
+    // Numbers of panels, places in the list and vertices go on from those of the cloths before.
+    const RestDistances own = rest_distances(cloth.mesh.faces, vertices, cloth.mesh.uv);
+    const Index first_vertex = world.objects[c].first_vertex, first_panel = panels;
+    for (Index panel : own.panel) {
+      all.panel.push_back(panel == kNone ? kNone : first_panel + panel);
+      panels = std::max(panels, all.panel.back() + 1);
+    }
+    for (std::size_t v = 0; v < vertices; ++v) all.first.push_back(before + own.first[v]);
+    for (const RestDistance& d : own.distances)
+      all.distances.push_back({first_vertex + d.vertex, d.squared});
+  }
+  all.first.push_back(static_cast<Index>(all.distances.size()));
 }
 
 }  // namespace
 
+void add_rest_lengths(const Cloth& cloth, std::vector<double>& lengths) {
+  if (!cloth.rest_in_uv) return add_side_lengths(cloth.mesh.faces, rest_positions(cloth), lengths);
+  for (const Corners& u : cloth.mesh.uv)
+    for (std::size_t c = 0; c < 3; ++c)
+      lengths.push_back(std::hypot(u[(c + 1) % 3].x - u[c].x, u[(c + 1) % 3].y - u[c].y));
+}
+
 World make_world(const Scene& scene) {
   // Cloths come first, so that their elements have the same numbers with and without obstacles.
   World world;
+  std::vector<double> lengths;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const Cloth& cloth = scene.cloths[c];
     check_cloth(cloth);
     const std::vector<Corners> corners = material_corners(cloth);
     append_object(world, cloth.name, true, c, cloth.mesh, cloth.mesh.positions, cloth.friction);
     append_rest_state(world, cloth, corners);
-    append_edges(world, world.objects.back(), &cloth, corners);
+    append_edges(world, world.objects.back(), &cloth, corners, lengths);
   }
 
   world.cloth_vertices = world.vertices;
@@ -303,9 +374,10 @@ World make_world(const Scene& scene) {
     obstacle.pose(0.0, pose);
     check_finite("obstacle " + in_quotes(obstacle.name), pose);
     append_object(world, obstacle.name, false, o, obstacle.mesh, pose, obstacle.friction);
-    append_edges(world, world.objects.back(), nullptr, {});
+    append_edges(world, world.objects.back(), nullptr, {}, lengths);
   }
-  world.median_edge = median_edge_length(world);
+  append_rest_distances(world, scene);
+  world.median_edge = median(std::move(lengths));
   return world;
 }
 

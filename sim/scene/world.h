@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/files/mesh.h"
+#include "sim/scene/rest_distances.h"
 #include "sim/scene/scene.h"
 
 namespace icloth {
@@ -41,8 +42,9 @@ struct World {
   Index cloth_edges = 0, edges = 0;
   Index cloth_faces = 0, faces = 0;
 
-  std::vector<Vec3d> position;       ///< start state [m] (vertices)
-  std::vector<Vec3d> rest;           ///< rest shape [m] (cloth_vertices)
+  std::vector<Vec3d> position;  ///< start state [m] (vertices)
+  std::vector<Vec3d>
+      rest;  ///< rest shape in space, or laid out in the pattern [m] (cloth_vertices)
   std::vector<double> mass;          ///< lumped, before density_scale [kg] (cloth_vertices)
   std::vector<double> area;          ///< one third of the rest areas around [m²] (cloth_vertices)
   std::vector<std::uint8_t> pinned;  ///< (cloth_vertices)
@@ -57,8 +59,14 @@ struct World {
   std::vector<Index> face_material;  ///< index into scene.cloths (cloth_faces)
   std::vector<Hinge> hinges;
 
-  double median_edge = 0;  ///< of the cloths [m]
+  /// Of all cloths, with vertices of the world; empty where no cloth has its rest shape in uv.
+  RestDistances rest_distances;
+
+  double median_edge = 0;  ///< of the cloths, at rest [m]
 };
+
+/// Appends the lengths at rest of the sides of all faces; an edge of two faces counts twice.
+void add_rest_lengths(const Cloth& cloth, std::vector<double>& lengths);
 
 /// Throws InputError naming object and element: zero-area rest face, vertex without mass or with a
 /// coordinate that is not finite.

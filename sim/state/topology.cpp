@@ -33,6 +33,13 @@ void Topology::upload(const World& world) {
     return Inverse{{real(m[0]), real(m[1]), real(m[2]), real(m[3])}};
   });
 
+  // Distances at rest around the seams of sewn cloths.
+  rest_panel.upload(world.rest_distances.panel);
+  seam_first.upload(world.rest_distances.first);
+  upload_as(seam, world.rest_distances.distances, [](const RestDistance& d) {
+    return SeamDistance{d.vertex, real(d.squared)};
+  });
+
   // A friction of its own is rare, and where no object has one the list stays empty.
   object.upload(world.object);
   const bool own_friction =

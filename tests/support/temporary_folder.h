@@ -14,7 +14,7 @@ namespace icloth {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::temp_directory_path() /
             ("icloth_" + std::to_string(::getpid()) + "_" + test->name());
     std::filesystem::create_directories(path_);

@@ -17,8 +17,8 @@
 #include "sim/files/box.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
+#include "sim/garment/open_scene.h"
 #include "sim/scene/intersections.h"
-#include "sim/scene/scene_io.h"
 #include "sim/scene/scene_meshes.h"
 
 namespace icloth {
@@ -159,7 +159,7 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene = load_scene(common.scene, scene_overrides(common), {}, &job.origin);
+  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin);
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);

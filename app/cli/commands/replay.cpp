@@ -5,7 +5,7 @@
 
 #include "app/common/headless.h"
 #include "app/common/options.h"
-#include "sim/scene/scene_io.h"
+#include "sim/garment/open_scene.h"
 
 namespace icloth {
 
@@ -13,7 +13,7 @@ int run_replay(const ReplayOptions& options) {
   // The recording says which scene to run, on which build.
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
-  job.scene = load_scene(recording.scene, recording.overrides, {}, &job.origin);
+  job.scene = open_scene(recording.scene, recording.overrides, &job.origin);
   check_recording(recording, *job.scene, options.recording);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})

@@ -9,7 +9,7 @@
 #include "sim/files/error.h"
 #include "sim/files/frame_export.h"
 #include "sim/files/text.h"
-#include "sim/scene/scene_io.h"
+#include "sim/garment/open_scene.h"
 #include "sim/scene/scene_meshes.h"
 
 namespace icloth {
@@ -56,7 +56,7 @@ void print_profile(const RunStatistics& statistics) {
 HeadlessJob make_job(const RunOptions& options, Recording& input) {
   const SimulationOptions& common = options.simulation;
   HeadlessJob job;
-  job.scene = load_scene(common.scene, scene_overrides(common), {}, &job.origin);
+  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin);
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     check_recording(input, *job.scene, options.input_file);

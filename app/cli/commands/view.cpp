@@ -5,7 +5,7 @@
 #include "app/common/headless.h"
 #include "app/window/viewer.h"
 #include "sim/files/error.h"
-#include "sim/scene/scene_io.h"
+#include "sim/garment/open_scene.h"
 
 namespace icloth {
 
@@ -19,7 +19,7 @@ int run_view(const ViewOptions& options) {
   // The notes go to the terminal that the window was opened from, and into a panel.
   SceneOrigin origin;
   const std::shared_ptr<const Scene> scene =
-      load_scene(simulation.scene, scene_overrides(simulation), {}, &origin);
+      open_scene(simulation.scene, scene_overrides(simulation), &origin);
   print_notes(origin);
   Viewer viewer(options, build, scene, std::move(origin));
   viewer.run();

@@ -1,0 +1,33 @@
+// Finds a start for a garment whose panels, as the pattern places them, go through the body or
+// through each other: panels are bent and moved away, then the body is made thinner.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/scene/scene.h"
+
+namespace icloth {
+
+/// What was tried for a garment.
+struct Arrangement {
+  std::size_t pairs_before = 0;    ///< of intersecting faces, as the pattern places the panels
+  std::size_t pairs_moved = 0;     ///< after panels were bent and moved
+  std::size_t pairs_left = 0;      ///< after the body was made thinner, too
+  double shrink = 0;               ///< depth by which bodies are thinner at the start [m]
+  int checks = 0;                  ///< starts that were tested
+  std::vector<std::string> moved;  ///< panels that stand elsewhere, a clause each
+  std::vector<std::string>
+      left;  ///< what still intersects, a clause each: "panel 'x' and body 'y'"
+};
+
+/// Arranges one garment among the bodies at time 0 and the garments `on`, numbers in
+/// scene.garments, that are dressed already. Its placements, its cloth's start and the report are
+/// those of the best arrangement; nothing changes where it starts clean.
+Arrangement arrange_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on);
+
+/// The surface moved inwards along its normals [m].
+std::vector<Vec3d> shrunk(const TriangleMesh& mesh, double depth);
+
+}  // namespace icloth

@@ -1,0 +1,306 @@
+#include "sim/garment/dressing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernels/index.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
+#include "sim/garment/arrange.h"
+#include "sim/garment/face_strain.h"
+
+namespace icloth {
+namespace {
+
+constexpr double kTimeStep = 0.005;     // [s]
+constexpr int kStepsBetweenRests = 20;  // then the velocities are halved
+constexpr int kStepsBetweenLooks = 10;  // at the strain
+constexpr double kClosedStrain = 0.05;  // of a garment whose seams are drawn together
+constexpr int kStallSteps = 50;         // it is as closed as it gets when in so many steps …
+constexpr double kStallChange = 0.01;   // … the strain changed by no more than this share
+constexpr int kMostRefusals = 5;        // one after the other
+constexpr double kGrowTime = 1;         // of bodies that start thinner [s]
+constexpr double kHoldStiffness = 1;    // of a held vertex [N/m]
+
+/// Without weight and wind, and with the integrator that takes most energy away.
+Parameters dressing_parameters(const Parameters& own) {
+  Parameters p = own;
+  p.step.time_step = kTimeStep;
+  p.implicit.integrator = Integrator::backward_euler;
+  p.gravity = {};
+  p.wind = {.x = 0, .y = 0, .z = 0, .air_density = 0, .air_drag = 0};
+  p.material.strain_limit = 0;
+  return p;
+}
+
+/// The scene in which one garment is put on.
+struct DressingRoom {
+  std::shared_ptr<Scene> scene;
+  std::vector<std::size_t> cloths;  ///< their numbers in the scene that is dressed
+  std::size_t garment = 0;          ///< number of the garment's cloth here
+};
+
+/// The body grows to its size within kGrowTime.
+void let_grow(Obstacle& body, double shrink) {
+  for (const std::vector<Vec3d>& positions : {shrunk(body.mesh, shrink), body.mesh.positions}) {
+    std::vector<Vec3f>& frame = body.frames.emplace_back();
+    for (Vec3d p : positions) frame.push_back(convert<float>(p));
+  }
+  body.frame_rate = 1 / kGrowTime;
+}
+
+/// The bodies as they stand at time 0, the cloths that are no garments, held where they are, the
+/// garments that are on already, and the next one.
+DressingRoom make_room(const Scene& scene, std::span<const std::size_t> on, std::size_t next,
+                       double shrink) {
+  DressingRoom room{std::make_shared<Scene>(), {}, 0};
+  room.scene->name = scene.name;
+  room.scene->parameters = dressing_parameters(scene.parameters);
+  for (const Obstacle& obstacle : scene.obstacles) {
+    Obstacle still;
+    still.name = obstacle.name;
+    still.friction = obstacle.friction;
+    still.mesh = obstacle.mesh;
+    obstacle.pose(0, still.mesh.positions);
+    if (shrink > 0) let_grow(still, shrink);
+    room.scene->obstacles.push_back(std::move(still));
+  }
+
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const auto of_cloth = [&](std::size_t g) { return at(scene.garments[g].cloth) == c; };
+    const bool is_next = of_cloth(next), is_on = std::ranges::any_of(on, of_cloth);
+    const bool is_garment =
+        std::ranges::any_of(scene.garments, [&](const Garment& g) { return at(g.cloth) == c; });
+    if (is_garment && !is_next && !is_on) continue;
+
+    Cloth cloth = scene.cloths[c];
+    cloth.material.strain_limit = 0;  // it would multiply the stiffness of seams that are open yet
+    if (!is_garment) {
+      cloth.pins.resize(cloth.mesh.positions.size());
+      std::iota(cloth.pins.begin(), cloth.pins.end(), Index{0});
+    }
+    if (is_next) room.garment = room.scene->cloths.size();
+    room.cloths.push_back(c);
+    room.scene->cloths.push_back(std::move(cloth));
+  }
+  return room;
+}
+
+/// Strains of the garment that is put on, without those of gathers.
+class StrainGauge {
+ public:
+  StrainGauge(const World& world, const DressingRoom& room, const Garment& garment)
+      : world_(world), first_face_(at(world.objects[room.garment].first_face)) {
+    const Cloth& cloth = room.scene->cloths[room.garment];
+    gathered_ = gathered_faces(garment, cloth);
+
+    std::vector<bool> sewn(cloth.mesh.positions.size());
+    for (const SewnSeam& seam : garment.sewn.seams)
+      for (const auto& pair : seam.points) sewn[at(garment.sewn.merged[at(pair[0])])] = true;
+    for (const Triangle& t : cloth.mesh.faces)
+      at_seam_.push_back(sewn[at(t[0])] || sewn[at(t[1])] || sewn[at(t[2])]);
+  }
+
+  std::vector<double> strains(const Snapshot& state, bool seams_alone) const {
+    const std::vector<double> all = face_strains(world_, state.x1);
+    std::vector<double> chosen;
+    for (std::size_t f = 0; f < gathered_.size(); ++f)
+      if (!gathered_[f] && (at_seam_[f] || !seams_alone)) chosen.push_back(all[first_face_ + f]);
+    return chosen;
+  }
+
+  double largest(const Snapshot& state) const { return percentile(strains(state, false), 1); }
+
+  double gathered_share() const {
+    return static_cast<double>(std::ranges::count(gathered_, true)) /
+           static_cast<double>(gathered_.size());
+  }
+
+ private:
+  const World& world_;
+  std::size_t first_face_;
+  std::vector<bool> gathered_, at_seam_;
+};
+
+/// Springs that keep labelled edges at their height: hands whose targets follow to the sides.
+class Holds {
+ public:
+  Holds(const World& world, const DressingRoom& room, const Garment& garment) {
+    const WorldObject& object = world.objects[room.garment];
+    std::vector<bool> wanted(at(object.vertex_count));
+    for (const LabelledEdge& edge : garment.sewn.labelled)
+      if (std::ranges::find(garment.plan.hold, edge.label) != garment.plan.hold.end())
+        for (Index v : edge.vertices) wanted[at(v)] = true;
+
+    // A hand grabs a face, so each vertex is held by the first of its faces.
+    for (Index f = object.first_face; f < object.first_face + object.face_count; ++f)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Index v = world.face[at(f)][c];
+        if (!wanted[at(v - object.first_vertex)]) continue;
+        wanted[at(v - object.first_vertex)] = false;
+        held_.push_back({v, f, c, world.position[at(v)].y});
+      }
+  }
+
+  std::vector<InputEvent> events(InputEvent::Kind kind, const Simulator& simulator) const {
+    std::vector<InputEvent> events;
+    if (held_.empty()) return events;
+    const Snapshot state = simulator.snapshot();
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      InputEvent event;
+      event.kind = kind;
+      event.handle = static_cast<int>(k) + 1;
+      event.face = held_[k].face;
+      event.barycentric = {held_[k].corner == 0 ? 1.0 : 0.0, held_[k].corner == 1 ? 1.0 : 0.0,
+                           held_[k].corner == 2 ? 1.0 : 0.0};
+      event.target = state.x1[at(held_[k].vertex)];
+      event.target.y = held_[k].height;
+      event.radius = 1e-6;
+      event.stiffness = kHoldStiffness;
+      events.push_back(event);
+    }
+    return events;
+  }
+
+ private:
+  struct Held {
+    Index vertex, face;
+    std::size_t corner;
+    double height;
+  };
+  std::vector<Held> held_;
+};
+
+/// Takes part of the motion away, so that the garment comes to rest.
+void scale_velocities(Simulator& simulator, double factor) {
+  Snapshot state = simulator.snapshot();
+  for (Vec3d& v : state.v) v = factor * v;
+  simulator.restore(state);
+}
+
+/// One garment that is being put on.
+class Dressing {
+ public:
+  Dressing(const Scene& scene, std::span<const std::size_t> on, std::size_t next, double shrink,
+           const DressingWatch& watch)
+      : garment_(scene.garments[next]),
+        room_(make_room(scene, on, next, shrink)),
+        least_steps_(shrink > 0 ? static_cast<int>(std::lround(kGrowTime / kTimeStep)) + 1 : 0),
+        world_(make_world(*room_.scene)),
+        gauge_(world_, room_, garment_),
+        holds_(world_, room_, garment_),
+        gravity_(scene.parameters.gravity),
+        simulator_(make_simulator(Build::cpu32, room_.scene)),
+        watch_(watch) {
+    report_.garment = scene.cloths[at(garment_.cloth)].name;
+  }
+
+  DressingReport run() {
+    close();
+    settle();
+    const Snapshot end = simulator_->snapshot();
+    report_.gathered_share = gauge_.gathered_share();
+    report_.strain_p95 = percentile(gauge_.strains(end, false), 0.95);
+    report_.largest_strain = gauge_.largest(end);
+    report_.seam_strain_p95 = percentile(gauge_.strains(end, true), 0.95);
+    return report_;
+  }
+
+  /// Writes where the garments are now into the scene; the next step starts at rest.
+  void write(Scene& scene) const {
+    const Snapshot end = simulator_->snapshot();
+    for (std::size_t c = 0; c < room_.cloths.size(); ++c) {
+      const WorldObject& object = world_.objects[c];
+      const auto first = end.x1.begin() + object.first_vertex;
+      scene.cloths[room_.cloths[c]].mesh.positions.assign(first, first + object.vertex_count);
+    }
+  }
+
+ private:
+  /// The seams draw together without weight, until the strain is small or stays as it is.
+  void close() {
+    const int most = static_cast<int>(std::lround(garment_.plan.closing / kTimeStep));
+    std::vector<InputEvent> events = holds_.events(InputEvent::Kind::grab, *simulator_);
+    double before = strain_ = gauge_.largest(simulator_->snapshot());
+    for (int k = 1; k <= most; ++k) {
+      step(events, most, false);
+      ++report_.closing_steps;
+      if (k % kStepsBetweenLooks == 0) strain_ = gauge_.largest(simulator_->snapshot());
+      if (strain_ < kClosedStrain && k >= least_steps_) break;
+      if (k % kStallSteps == 0) {
+        if (std::fabs(strain_ - before) <= kStallChange * before && k >= least_steps_) break;
+        before = strain_;
+      }
+      events = holds_.events(InputEvent::Kind::move, *simulator_);
+    }
+  }
+
+  /// Weight comes on, and the holds go.
+  void settle() {
+    Parameters parameters = simulator_->parameters();
+    parameters.gravity = gravity_;
+    simulator_->set_parameters(parameters);
+    const int most = static_cast<int>(std::lround(garment_.plan.settling / kTimeStep));
+    std::vector<InputEvent> events = holds_.events(InputEvent::Kind::release, *simulator_);
+    for (int k = 1; k <= most; ++k) {
+      step(events, most, true);
+      ++report_.settling_steps;
+      if (k % kStepsBetweenLooks == 0) strain_ = gauge_.largest(simulator_->snapshot());
+      events.clear();
+    }
+  }
+
+  void step(const std::vector<InputEvent>& events, int most, bool settling) {
+    const StepReport report = simulator_->step(events);
+    report_.impacts += report.impacts_first;
+    ++steps_;
+    if (report.accepted) {
+      refusals_ = 0;
+    } else {
+      // From rest the same step asks for less.
+      ++report_.refused_steps;
+      scale_velocities(*simulator_, 0);
+      if (++refusals_ == kMostRefusals)
+        throw InputError("cloth " + in_quotes(report_.garment) + " cannot be put on: step " +
+                         std::to_string(steps_) + " of dressing leaves " +
+                         std::to_string(report.impacts_left) + " collisions, expected none");
+    }
+    if (steps_ % kStepsBetweenRests == 0) scale_velocities(*simulator_, 0.5);
+    const int done = settling ? report_.settling_steps : report_.closing_steps;
+    if (watch_ && !watch_(*simulator_, {report_.garment, settling, done + 1, most, strain_}))
+      throw DressingCancelled{};
+  }
+
+  const Garment& garment_;
+  DressingRoom room_;
+  int least_steps_;  ///< until the bodies have grown
+  World world_;
+  StrainGauge gauge_;
+  Holds holds_;
+  GravityParameters gravity_;
+  std::unique_ptr<Simulator> simulator_;
+  const DressingWatch& watch_;
+  DressingReport report_;
+  double strain_ = 0;
+  int steps_ = 0, refusals_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::size_t> dressing_order(const Scene& scene) {
+  std::vector<std::size_t> order(scene.garments.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t g) { return scene.garments[g].layer; });
+  return order;
+}
+
+DressingReport dress_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on,
+                             double shrink, const DressingWatch& watch) {
+  Dressing dressing(scene, on, garment, shrink, watch);
+  DressingReport report = dressing.run();
+  dressing.write(scene);
+  return report;
+}
+
+}  // namespace icloth

@@ -1,0 +1,86 @@
+#include "sim/garment/open_scene.h"
+
+#include <algorithm>
+
+#include "kernels/index.h"
+#include "sim/files/text.h"
+#include "sim/garment/drape_cache.h"
+
+namespace icloth {
+namespace {
+
+/// The items one after the other, at most four of them.
+std::string joined(const std::vector<std::string>& items) {
+  constexpr std::size_t kMostNamed = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(items.size(), kMostNamed); ++i)
+    text += (i > 0 ? ", " : "") + items[i];
+  if (items.size() > kMostNamed)
+    text += " and " + std::to_string(items.size() - kMostNamed) + " more";
+  return text;
+}
+
+/// What users should know about how the garment starts.
+void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
+                      std::vector<std::string>& notes) {
+  if (!arrangement.moved.empty())
+    notes.push_back(cloth + ": " + joined(arrangement.moved) + " than in the pattern, where " +
+                    std::to_string(arrangement.pairs_before) + " pairs of faces intersect");
+  if (arrangement.shrink > 0 && arrangement.pairs_left == 0)
+    notes.push_back(cloth + ": bodies start " + rounded_text(1000 * arrangement.shrink) +
+                    " mm thinner while it is put on");
+  if (arrangement.pairs_left > 0)
+    notes.push_back(cloth + " cannot be put on: " + joined(arrangement.left) +
+                    " intersect at the start");
+}
+
+}  // namespace
+
+std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string>& notes,
+                                           const DressingWatch& watch) {
+  std::vector<GarmentReport> reports;
+  std::vector<std::size_t> on;
+  for (std::size_t g : dressing_order(scene)) {
+    const std::string& name = scene.cloths[at(scene.garments[g].cloth)].name;
+    GarmentReport& report = reports.emplace_back();
+    report.garment = name;
+    report.arrangement = arrange_garment(scene, g, on);
+    note_arrangement("cloth " + in_quotes(name), report.arrangement, notes);
+    if (report.arrangement.pairs_left > 0) break;
+
+    if (scene.garments[g].plan.on)
+      report.dressing = dress_garment(scene, g, on, report.arrangement.shrink, watch);
+    on.push_back(g);
+  }
+  return reports;
+}
+
+std::shared_ptr<const Scene> open_scene(const std::string& argument,
+                                        std::span<const std::string> overrides, SceneOrigin* origin,
+                                        const DressingWatch& watch) {
+  SceneOrigin own;
+  if (!origin) origin = &own;
+  std::shared_ptr<const Scene> loaded = load_scene(argument, overrides, {}, origin);
+  if (loaded->garments.empty()) return loaded;
+
+  // What was dressed before with the same pattern, body, fabric and parameters is taken as it was.
+  auto scene = std::make_shared<Scene>(*loaded);
+  const std::string folder = drape_folder(), key = drape_key(*scene);
+  std::optional<Drape> drape = load_drape(folder, key, *scene);
+  if (drape) {
+    for (std::size_t g = 0; g < scene->garments.size(); ++g)
+      scene->cloths[at(scene->garments[g].cloth)].mesh.positions = drape->positions[g];
+  } else {
+    drape.emplace();
+    const auto reports = put_garments_on(*scene, drape->notes, watch);
+    const bool worn =
+        reports.size() == scene->garments.size() && reports.back().arrangement.pairs_left == 0;
+    for (const Garment& garment : scene->garments)
+      drape->positions.push_back(scene->cloths[at(garment.cloth)].mesh.positions);
+    if (worn) save_drape(folder, key, *drape);
+  }
+  origin->notes.insert(origin->notes.end(), drape->notes.begin(), drape->notes.end());
+  return scene;
+}
+
+}  // namespace icloth
