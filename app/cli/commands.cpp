@@ -10,6 +10,7 @@
 #include "app/cli/commands/check.h"
 #include "app/cli/commands/detect.h"
 #include "app/cli/commands/info.h"
+#include "app/cli/commands/pattern.h"
 #include "app/cli/commands/render.h"
 #include "app/cli/commands/replay.h"
 #include "app/cli/commands/run.h"
@@ -27,8 +28,8 @@
 namespace icloth {
 namespace {
 
-constexpr std::string_view kCommands[] = {"view", "run",    "render", "bench", "replay",
-                                          "ccd",  "detect", "check",  "sew",   "info"};
+constexpr std::string_view kCommands[] = {"view",   "run",   "render",  "bench", "replay", "ccd",
+                                          "detect", "check", "pattern", "sew",   "info"};
 
 int print_keys() {
   std::fputs(bindings_markdown().c_str(), stdout);
@@ -47,6 +48,7 @@ struct Commands {
   ReplayOptions replay;
   CheckOptions check;
   DetectOptions detect;
+  PatternOptions pattern;
   SewOptions sew;
   std::string ccd_queries, ccd_predictions;
   bool list_keys = false;
@@ -62,6 +64,7 @@ struct Commands {
   void add_ccd();
   void add_detect();
   void add_check();
+  void add_pattern();
   void add_sew();
   void add_info();
 };
@@ -217,6 +220,13 @@ void Commands::add_sew() {
   command->add_flag("--quiet", sew.quiet, "print errors only");
 }
 
+void Commands::add_pattern() {
+  CLI::App* command = add_command("pattern", "panels and stitches of a sewing pattern",
+                                  [this] { return run_pattern(pattern); });
+  command->add_option("FILE", pattern.file, "pattern of GarmentCode (.json)")->required();
+  command->add_option("--svg", pattern.svg, "draw the panels with the numbers of their edges here");
+}
+
 void Commands::add_info() {
   CLI::App* command = add_command("info", "version, machine, builds, renderer",
                                   [this] { return list_keys ? print_keys() : run_info(); });
@@ -235,6 +245,7 @@ Commands::Commands() {
   add_ccd();
   add_detect();
   add_check();
+  add_pattern();
   add_sew();
   add_info();
 }

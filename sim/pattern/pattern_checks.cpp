@@ -75,8 +75,11 @@ class SewnCorners {
       first_.push_back(count);
       count += panel.corners.size();
     }
+
+    // Every corner is by itself until a stitch joins it to another.
     root_.resize(count);
     std::iota(root_.begin(), root_.end(), std::size_t{0});
+
     for (std::size_t s = 0; s < pattern.stitches.size(); ++s) {
       if (s == left_out) continue;
       const Stitch& stitch = pattern.stitches[s];
@@ -118,6 +121,8 @@ void note_collapsing_stitches(Pattern& pattern) {
   for (std::size_t s = 0; s < pattern.stitches.size(); ++s) {
     const auto& sides = pattern.stitches[s].sides;
     if (!all.is_closed(sides[0]) && !all.is_closed(sides[1])) continue;
+
+    // Without this stitch, the edge of a ring is closed still.
     SewnCorners others(pattern, s);
     if (others.is_closed(sides[0]) || others.is_closed(sides[1])) continue;
     pattern.notes.push_back(pattern.file + ": " + stitch_name(pattern, s) +
@@ -130,15 +135,12 @@ void note_lengths(Pattern& pattern) {
   std::size_t gathers = 0;
   double largest = 1;
   for (std::size_t s = 0; s < pattern.stitches.size(); ++s) {
-    const auto length = [&](std::size_t k) {
-      const Panel& panel = pattern.panels[at(pattern.stitches[s].sides[k].panel)];
-      return EdgePath(panel, panel.edges[at(pattern.stitches[s].sides[k].edge)]).length();
-    };
-    const double a = length(0), b = length(1), ratio = std::max(a, b) / std::min(a, b);
+    const double ratio = stitch_ratio(pattern, s);
     if (ratio > kLikelyMistakeRatio)
-      pattern.notes.push_back(pattern.file + ": " + stitch_name(pattern, s) + " sews " + cm(a) +
-                              " to " + cm(b) + ", ratio " + rounded_text(ratio) +
-                              ": probably a mistake, expected at most " +
+      pattern.notes.push_back(pattern.file + ": " + stitch_name(pattern, s) + " sews " +
+                              cm(stitched_length(pattern, s, 0)) + " to " +
+                              cm(stitched_length(pattern, s, 1)) + ", ratio " +
+                              rounded_text(ratio) + ": probably a mistake, expected at most " +
                               number_text(kLikelyMistakeRatio));
     else if (ratio > kGatherRatio)
       ++gathers, largest = std::max(largest, ratio);
@@ -191,6 +193,17 @@ void note_placements(Pattern& pattern) {
 }
 
 }  // namespace
+
+double stitched_length(const Pattern& pattern, std::size_t stitch, std::size_t side) {
+  const PanelSide edge = pattern.stitches[stitch].sides[side];
+  const Panel& panel = pattern.panels[at(edge.panel)];
+  return EdgePath(panel, panel.edges[at(edge.edge)]).length();
+}
+
+double stitch_ratio(const Pattern& pattern, std::size_t stitch) {
+  const double a = stitched_length(pattern, stitch, 0), b = stitched_length(pattern, stitch, 1);
+  return std::max(a, b) / std::min(a, b);
+}
 
 std::string stitch_name(const Pattern& pattern, std::size_t stitch) {
   const auto side = [&](PanelSide s) {

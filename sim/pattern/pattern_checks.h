@@ -14,6 +14,9 @@ inline constexpr double kSmallestPanel = 1e-4;
 /// grid.
 inline constexpr double kLargestCoordinate = 50;
 
+/// Lengths of two stitched edges, the longer one over the shorter one, above this: a gather.
+inline constexpr double kGatherRatio = 1.03;
+
 /// Ratio of the lengths of two stitched edges above which a mistake is likely.
 inline constexpr double kLikelyMistakeRatio = 4;
 
@@ -21,6 +24,12 @@ inline constexpr double kLikelyMistakeRatio = 4;
 /// crosses itself, and a panel without area. What can be sewn and yet looks wrong is added to the
 /// notes. Sets Panel::clockwise.
 void check_pattern(Pattern& pattern);
+
+/// Length of one of the two edges of a stitch [m].
+double stitched_length(const Pattern& pattern, std::size_t stitch, std::size_t side);
+
+/// The longer edge of a stitch over the shorter one.
+double stitch_ratio(const Pattern& pattern, std::size_t stitch);
 
 /// "stitch 3 (front:1 – back:7)"
 std::string stitch_name(const Pattern& pattern, std::size_t stitch);

@@ -266,6 +266,7 @@ void PatternReader::read_circle(const Panel& panel, PanelEdge& edge, const JsonV
 }
 
 PanelSide PatternReader::read_side(const JsonValue& value) const {
+  // The panel, by its name.
   JsonObject object(value);
   const std::string& name = object.required("panel").text();
   const auto found = numbers_.find(name);
@@ -275,6 +276,8 @@ PanelSide PatternReader::read_side(const JsonValue& value) const {
     object["panel"].refuse("the name of a panel, the nearest is " +
                            in_quotes(nearest_name(name, names)));
   }
+
+  // The edge, by its number.
   const Panel& panel = pattern_.panels[static_cast<std::size_t>(found->second)];
   const auto last = static_cast<std::int64_t>(panel.edges.size()) - 1;
   const JsonValue edge = object.required("edge");

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "sim/files/text.h"
-#include "sim/pattern/outline.h"
 #include "sim/pattern/pattern_checks.h"
 
 namespace icloth {
@@ -15,9 +14,10 @@ namespace {
 /// rounded.
 constexpr double kUvGap = 1.0 / 64;
 
-/// A seam whose points would lie at less than this share of their distance with one side turned
-/// round is reported as twisted.
+/// A seam whose edges would run alike within this share of what they do, with one of them turned
+/// round, is reported as twisted.
 constexpr double kTwisted = 0.5;
+constexpr double kTooShort = 0.1;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -48,7 +48,13 @@ class Sewing {
  private:
   void note(const std::string& text) { garment_.notes.push_back(pattern_.file + ": " + text); }
 
+  struct Gap {
+    double mean = 0, largest = 0;  ///< distance of the points of a pair [m]
+    double uneven = 0;             ///< the same without the distance of the edges' middles [m]
+  };
+
   void add_seam(std::size_t s);
+  Gap gap_between(std::span<const Index> a, std::span<const Index> b) const;
   void merge_points();
   void add_faces();
   void note_branches();
@@ -75,29 +81,50 @@ void Sewing::add_seam(std::size_t s) {
   std::vector<Index> side_b = points_of(b);
   if (!pattern_.stitches[s].right_wrong) std::ranges::reverse(side_b);
 
-  // The gaps as declared, and with one side turned round.
   SewnSeam seam{a.panel, a.edge, b.panel, b.edge, 0, 0, {}, 0, 0};
-  double turned = 0;
-  const auto count = static_cast<double>(side_a.size());
-  for (std::size_t i = 0; i < side_a.size(); ++i) {
-    const auto& x = garment_.open_positions;
-    const double gap = norm(x[at(side_a[i])] - x[at(side_b[i])]);
-    turned += norm(x[at(side_a[i])] - x[at(side_b[side_b.size() - 1 - i])]) / count;
-    seam.mean_gap += gap / count;
-    seam.largest_gap = std::max(seam.largest_gap, gap);
-    seam.points.push_back({side_a[i], side_b[i]});
-  }
-  if (turned < kTwisted * seam.mean_gap)
-    note(stitch_name(pattern_, s) + " looks twisted: its points are " + cm(seam.mean_gap) +
-         " apart, and " + cm(turned) + " with one edge turned round; is \"right_wrong\" right?");
-
-  const auto length = [&](PanelSide side) {
-    const Panel& panel = pattern_.panels[at(side.panel)];
-    return EdgePath(panel, panel.edges[at(side.edge)]).length();
-  };
-  seam.length_a = length(a);
-  seam.length_b = length(b);
+  seam.length_a = stitched_length(pattern_, s, 0);
+  seam.length_b = stitched_length(pattern_, s, 1);
+  const Gap gap = gap_between(side_a, side_b);
+  seam.mean_gap = gap.mean;
+  seam.largest_gap = gap.largest;
+  for (std::size_t i = 0; i < side_a.size(); ++i) seam.points.push_back({side_a[i], side_b[i]});
   garment_.seams.push_back(std::move(seam));
+
+  // Two edges of one panel may point anywhere before the panel is bent, but a right side that is
+  // sewn to a wrong side makes a Möbius strip of it.
+  if (a.panel == b.panel) {
+    if (pattern_.stitches[s].right_wrong)
+      note(stitch_name(pattern_, s) +
+           " looks twisted: it sews the right side of a panel to its own " +
+           "wrong side; is \"right_wrong\" right?");
+    return;
+  }
+
+  // Panels may be far apart, so the distance between their middles does not count. An edge that is
+  // short beside that distance may run around the body, and its direction tells nothing.
+  std::ranges::reverse(side_b);
+  const Gap turned = gap_between(side_a, side_b);
+  if (gap.uneven > kTooShort * gap.mean && turned.uneven < kTwisted * gap.uneven)
+    note(stitch_name(pattern_, s) + " looks twisted: its points are " + cm(gap.mean) +
+         " apart, and " + cm(turned.mean) +
+         " with one edge turned round; is \"right_wrong\" right?");
+}
+
+/// Distances between the points of two edges, pair by pair.
+Sewing::Gap Sewing::gap_between(std::span<const Index> a, std::span<const Index> b) const {
+  const auto difference = [&](std::size_t i) {
+    return garment_.open_positions[at(a[i])] - garment_.open_positions[at(b[i])];
+  };
+  const double share = 1 / static_cast<double>(a.size());
+  Gap gap;
+  Vec3d middle;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    middle += share * difference(i);
+    gap.mean += share * norm(difference(i));
+    gap.largest = std::max(gap.largest, norm(difference(i)));
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) gap.uneven += share * norm(difference(i) - middle);
+  return gap;
 }
 
 /// Makes one vertex of the points that are sewn together, directly or by way of others, at the mean

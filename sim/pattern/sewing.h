@@ -10,6 +10,7 @@
 
 #include "sim/files/mesh.h"
 #include "sim/pattern/pattern.h"
+#include "sim/pattern/pattern_checks.h"
 
 namespace icloth {
 
@@ -37,9 +38,6 @@ MeshedPattern mesh_pattern(const Pattern& pattern, double edge_length);
 
 /// Edge length [m] with which the whole pattern gets about so many triangles: √(2.31 area / N).
 double edge_length_for(const Pattern& pattern, Index triangles);
-
-/// Lengths of the two edges of a stitch, the longer one over the shorter one, above this: a gather.
-inline constexpr double kGatherRatio = 1.03;
 
 /// A seam of the garment: one stitch of the pattern. Vertices are those of the open mesh.
 struct SewnSeam {

@@ -6,9 +6,16 @@ namespace icloth::fuzz {
 
 std::span<const Target> targets() {
   static constexpr Target kTargets[] = {
-      {"scene", read_scene},   {"material", read_material}, {"recording", read_recording},
-      {"camera", read_camera}, {"obj", read_obj},           {"ply", read_ply},
-      {"pc2", read_pc2},       {"mdd", read_mdd},           {"query", read_query},
+      {"scene", read_scene},
+      {"material", read_material},
+      {"recording", read_recording},
+      {"camera", read_camera},
+      {"obj", read_obj},
+      {"ply", read_ply},
+      {"pc2", read_pc2},
+      {"mdd", read_mdd},
+      {"query", read_query},
+      {"pattern", read_pattern_json},
   };
   return kTargets;
 }

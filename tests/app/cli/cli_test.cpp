@@ -88,6 +88,14 @@ constexpr const char* kDrop = R"({
   "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
 })";
 
+/// A front and a back, sewn at one side.
+constexpr const char* kSack = R"({"pattern": {"panels": {
+  "front": {"vertices": [[0, 0], [40, 0], [40, 60], [0, 60]], "edges": [{"endpoints": [0, 1]},
+    {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}]},
+  "back": {"vertices": [[0, 0], [40, 0], [40, 50], [0, 50]], "edges": [{"endpoints": [0, 1]},
+    {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}]}},
+  "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 3}]]}})";
+
 constexpr const char* kTwoTriangles = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 constexpr const char* kCrossing =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.3 1\n";
@@ -120,6 +128,7 @@ TEST_F(Cli, BadUsageIsRefusedInOneLine) {
   expect_bad_input("run scarf --export fbx --out frames", "fbx");
   expect_bad_input("run scarf --every 0 --out frames", "--every");
   expect_bad_input("check", "MESH");
+  expect_bad_input("pattern", "FILE");
   expect_bad_input("bench fast", "quick");
   expect_bad_input("bench --threads x", "--threads");
 }
@@ -147,6 +156,8 @@ TEST_F(Cli, BadFilesAreRefusedInOneLine) {
   expect_bad_input("check broken.obj", "broken.obj");
   expect_bad_input("check range.obj", "4");
   expect_bad_input("check empty.obj", "empty.obj");
+  expect_bad_input("pattern nosuch.json", "nosuch.json");
+  expect_bad_input("pattern unknown.json", "'pattern'");
   expect_bad_input("replay nosuch.json", "nosuch.json");
   expect_bad_input("replay unknown.json", "icloth_recording");
   expect_bad_input("run scarf --input unknown.json", "icloth_recording");
@@ -193,6 +204,19 @@ TEST_F(Cli, CheckFindsWhatCrosses) {
   EXPECT_EQ(inter.code, 1);
   EXPECT_TRUE(contains(inter.out, "one.obj")) << inter.out;
   EXPECT_TRUE(contains(inter.out, "other.obj")) << inter.out;
+}
+
+TEST_F(Cli, PatternPrintsPanelsAndStitchesAndDrawsThem) {
+  write("sack.json", kSack);
+  const Outcome outcome = icloth("pattern sack.json --svg sack.svg");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "stitch 0 (front:1 – back:3)")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "panels 2, edges 8, stitches 1, gathers 1")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "note: sack.json: units_in_meter is missing")) << outcome.out;
+  const std::string svg = read(folder_ / "sack.svg");
+  EXPECT_TRUE(svg.starts_with("<svg ") && svg.ends_with("</svg>\n")) << svg;
+  EXPECT_TRUE(contains(svg, ">front<") && contains(svg, ">s0<")) << svg;
+  expect_bad_input("pattern sack.json --svg no/such/sack.svg", "no/such");
 }
 
 TEST_F(Cli, DumpConfigShowsWhatIsInForce) {
