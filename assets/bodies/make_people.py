@@ -36,7 +36,7 @@ def path_of(name):
 def make(name):
     person = PERSONS[name]()
     vertices, triangles = make_shape(person)
-    rig = Rig(person['joints'])
+    rig = Rig(person)
     weights = heat_weights(rig, vertices, triangles, Body(person))
     clips = {clip: sample(rig, clip)[:3] for clip in clips_of(name)}
     write_glb(path_of(name), name, vertices, vertex_normals(vertices, triangles), triangles, rig,

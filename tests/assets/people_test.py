@@ -9,8 +9,9 @@ import os
 import struct
 import sys
 
-# Height [m], and the clips that each person must have.
-PEOPLE = {'woman': (1.70, {'dance', 'walk', 'turn'})}
+# Height [m] and clips of each person.
+CLIPS = {'dance', 'walk', 'turn', 'kungfu', 'swing'}
+PEOPLE = {'woman': (1.70, CLIPS), 'dancer': (1.72, CLIPS), 'boy': (1.35, CLIPS)}
 COMPONENTS = {'SCALAR': 1, 'VEC3': 3, 'VEC4': 4, 'MAT4': 16}
 FORMATS = {5121: 'B', 5123: 'H', 5126: 'f'}
 

@@ -14,20 +14,23 @@ class Body:
 
     def __init__(self, person):
         self.person = person
-        self.joints = person['joints']
+        self.joints = person['table_joints']
 
     def __call__(self, p):
-        q = p.copy()
+        return self.value(p / self.person['scale']) * self.person['scale']
+
+    def value(self, q):
+        """The field at the table's height of 1.70 m."""
         q[:, 0] = np.sqrt(q[:, 0] ** 2 + .003 ** 2)  # mirror images that meet without a crease
         j = self.joints
         value = self.torso(q)
         value = join(value, inside_box(q, vec(.06, j['tip'][1] - .06, -.2),
                                        vec(1, j['shoulder'][1] + .08, .2), self.arm), .035)
-        value = join(value, inside_box(q, vec(-.02, -.1, -.3), vec(.3, j['hip'][1] + .12, .4),
-                                       self.leg), .045)
+        value = join(value, inside_box(q, vec(-.02, -.1, -.3), vec(.3, j['hip'][1] + .28, .4),
+                                       self.leg), .055)
         value = self.crease(q, value)
         low = j['neck'] - vec(.3, .14, .3)
-        value = join(value, inside_box(q, low, vec(.3, 3, .4), self.neck), .045)
+        value = join(value, inside_box(q, low, vec(.3, 3, .4), self.neck), .04)
         return join(value, inside_box(q, j['head'] - vec(.3, .12, .3), vec(.3, 3, .4), self.head), .02)
 
     # --- torso ---
@@ -47,7 +50,7 @@ class Body:
         # The slope from the neck to the shoulder, the shoulder blades and the furrow of the spine.
         ra, rb = t['trapezius']
         neck, shoulder = j['neck'], j['shoulder']
-        value = join(value, cone(q, vec(.016, neck[1] + .035, neck[2]),
+        value = join(value, cone(q, vec(.014, neck[1] + .020, neck[2]),
                                  shoulder + vec(-.022, .022, -.004), ra, rb), .05)
         s = t['blade']
         if s:
@@ -67,7 +70,7 @@ class Body:
         b = vec(.085, j['clavicle'][1] + .018, j['clavicle'][2] + .036)
         c = j['shoulder'] + vec(-.004, .034, .012)
         bone = np.minimum(cone(q, a, b, r, r * .85), cone(q, b, c, r * .85, r * .8))
-        return join(value, bone, .016)
+        return join(value, bone, .022)
 
     # --- arm and hand ---
 
@@ -83,14 +86,14 @@ class Body:
                           [PALM, ARM, THUMB])
         value = join(value, elbow, .02)
         hand = inside_box(q, w - .20, w + .24, self.hand)
-        return join(value, hand, .03)
+        return join(value, hand, .016)
 
     def hand(self, q):
         """A palm of four bones, four fingers that lie together, and a thumb."""
         k = self.person['hand']
         p = (q - self.joints['wrist']) / k
         p = np.stack([p @ ARM, p @ PALM, p @ THUMB], -1)  # along, out of the palm, to the thumb
-        value = flat_cone(p, vec(-.005, 0, 0), vec(.02, 0, .002), .0275, .029, vec(0, 1, 0), .72)
+        value = flat_cone(p, vec(.002, 0, 0), vec(.026, 0, .002), .0245, .0285, vec(0, 1, 0), .72)
 
         # Fingers from the forefinger to the little finger: base and length, slightly fanned.
         fingers = None
@@ -121,21 +124,21 @@ class Body:
         j, r, t = self.joints, self.person['leg'], self.person
         hip, knee, ankle = j['hip'], j['knee'], j['ankle']
         thigh, shin = knee - hip, ankle - knee
-        value = limb(q, [hip + vec(.004, -.03, 0), hip + .35 * thigh, hip + .70 * thigh, knee,
+        value = limb(q, [hip + vec(-.012, .050, 0), hip + vec(.004, -.03, 0), hip + .35 * thigh, hip + .70 * thigh, knee,
                          knee + .18 * shin + vec(0, 0, -.004), knee + .38 * shin + vec(0, 0, -.008),
-                         knee + .68 * shin + vec(0, 0, -.004), ankle + vec(0, .035, -.002)], r)
+                         knee + .68 * shin + vec(0, 0, -.004), ankle + vec(0, .035, -.002)], [.84 * r[0]] + r)
 
         # Calf: the inner head hangs lower than the outer one.
         c = r[4]
         for x, along, out in ((-.014, .30, .62), (.014, .25, .60)):
             center = knee + along * shin + vec(x, 0, -c * .50)
             value = join(value, ellipsoid(q, center, vec(c * .62, .098 * t['calf'], c * out)), .03)
-        value = join(value, cone(q, knee + .55 * shin + vec(0, 0, -.026), ankle + vec(0, -.02, -.030),
-                                 .020, .012), .03)
+        value = join(value, cone(q, knee + .50 * shin + vec(0, 0, -.014), ankle + vec(0, -.02, -.030),
+                                 .016, .012), .04)
 
         # Knee cap, and the muscle over it.
         k = r[3]
-        value = join(value, ellipsoid(q, knee + vec(0, .004, k * .68), vec(k * .50, .030, k * .40)), .035)
+        value = join(value, ellipsoid(q, knee + vec(0, .004, k * .68), vec(k * .46, .032, k * .40)), .040)
         value = join(value, ellipsoid(q, hip + .55 * thigh + vec(0, 0, r[1] * .22),
                                       vec(r[1] * .80, .16, r[1] * .80)), .04)
         foot = inside_box(q, vec(-.1, -.1, -.3), vec(.4, ankle[1] + .14, .5), self.foot)
@@ -188,13 +191,15 @@ class Body:
         p = (q - base) / k
         value = ellipsoid(p, vec(0, .138, -.010), vec(.0715, .083, .092))                   # skull
         value = join(value, ellipsoid(p, vec(0, .080, .024), vec(.0540, .080, .0575)), .04)  # face
-        value = join(value, ellipsoid(p, vec(0, .150, .028), vec(.057, .050, .055)), .03)   # forehead
+        value = join(value, ellipsoid(p, vec(0, .146, .021), vec(.057, .050, .054)), .03)   # forehead
         jaw = cone(p, vec(.034, .048, .010), vec(.007, .016, .062), .0170, .0135)
         value = join(value, jaw, .034)
         value = join(value, ellipsoid(p, vec(0, .0135, .066), vec(.015, .0130, .0140)), .018)  # chin
         value = join(value, ellipsoid(p, vec(.040, .076, .050), vec(.021, .020, .021)), .035)  # cheek
-        brow = np.minimum(cone(p, vec(.010, .126, .0755), vec(.030, .1305, .0715), .0070, .0070),
-                          cone(p, vec(.030, .1305, .0715), vec(.048, .124, .053), .0070, .0060))
+        value = join(value, ellipsoid(p, vec(.029, .044, .046),
+                                      vec(.021, .026, .022) * self.person['cheek']), .035)
+        brow = np.minimum(cone(p, vec(.010, .1265, .0730), vec(.030, .1310, .0690), .0065, .0065),
+                          cone(p, vec(.030, .1310, .0690), vec(.047, .125, .052), .0065, .0060))
         value = join(value, brow, .016)
 
         # Eyes: sockets, then the balls under closed lids.
@@ -202,17 +207,17 @@ class Body:
         value = carve(value, socket, .014)
         value = join(value, ellipsoid(p, vec(.0310, .1115, .0660), vec(.0150, .0100, .0115)), .004)
 
-        nose = cone(p, vec(0, .114, .0785), vec(0, .078, .0975), .0050, .0070)
+        nose = cone(p, vec(0, .114, .0770), vec(0, .078, .0970), .0050, .0065)
         nose = join(nose, ellipsoid(p, vec(.0070, .0740, .0905), vec(.0055, .0050, .0080)), .007)
         nose = join(nose, ellipsoid(p, vec(0, .0770, .0990), vec(.0065, .0065, .0070)), .008)
         value = join(value, nose, .013)
 
         # Mouth: two lips with a groove between them, on a low mound, and the hollow over the chin.
         value = join(value, ellipsoid(p, vec(0, .046, .064), vec(.034, .020, .0175)), .022)
-        upper = cone(p, vec(.004, .0510, .0815), vec(.0230, .0470, .0715), .0042, .0028)
-        lower = cone(p, vec(.003, .0420, .0810), vec(.0205, .0455, .0715), .0052, .0030)
-        value = join(value, join(upper, lower, .0015), .006)
-        value = carve(value, ellipsoid(p, vec(0, .0300, .0900), vec(.018, .0045, .0080)), .014)
+        upper = cone(p, vec(.005, .0515, .0815), vec(.0240, .0475, .0715), .0045, .0028)
+        lower = cone(p, vec(.004, .0410, .0805), vec(.0215, .0455, .0710), .0055, .0030)
+        value = join(value, join(upper, lower, .001), .005)
+        value = carve(value, ellipsoid(p, vec(0, .0290, .0905), vec(.020, .0045, .0080)), .014)
 
         # Ears lean outwards and back.
         axes = [unit(vec(1, .1, .35)), unit(vec(-.1, 1, -.18)), unit(vec(-.35, .15, 1))]
@@ -222,11 +227,14 @@ class Body:
 
     def hair(self, p, value):
         """A smooth cap of hair, cut out for face, ears and nape."""
+        style = self.person['hair']
         cap = ellipsoid(p, vec(0, .140, -.014), vec(.0830, .0960, .1065))
-        cap = carve(cap, ellipsoid(p, vec(0, .080, .125), vec(.077, .098, .105)), .004)
+        cap = carve(cap, ellipsoid(p, vec(0, .072, .125), vec(.076, .100, .108)), .007)
         cap = carve(cap, ellipsoid(p, vec(.090, .082, .012), vec(.036, .042, .040)), .006)
         cap = carve(cap, ellipsoid(p, vec(0, -.010, -.050), vec(.12, .088, .10)), .012)
-        value = join(value, cap, .003)
-        if self.person['hair'] == 'bun':
+        value = join(value, cap, .005)
+        if style == 'bun':
             value = join(value, ellipsoid(p, vec(0, .176, -.122), vec(.036, .034, .034)), .014)
+        if style == 'knot':
+            value = join(value, ellipsoid(p, vec(0, .102, -.112), vec(.042, .034, .030)), .014)
         return value

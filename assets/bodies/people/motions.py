@@ -1,4 +1,4 @@
-"""The clips: dance, walk and turn.
+"""The clips: dance, walk, turn, kungfu and swing.
 
 Each clip starts and ends in the rest pose (A-pose), in which garments are put on; in between a smooth
 envelope brings the movement in and out. Clips are sampled at FPS keys a second.
@@ -117,7 +117,106 @@ def smooth_linear(x, ramp=.12):
     return speed * (x - ramp / 2)
 
 
-CLIPS = dict(dance=(dance, 8.), walk=(walk, 6.), turn=(turning, 9.))
+# Arms of the kung-fu clip: down, front, twist, elbow, wrist, out. An arm that goes back is one that goes
+# forwards by a negative angle: so a punch passes the hip and not the side.
+REST = (45, 0, 0, 0, 0, 0)
+GUARD = (34, 18, 10, 80, 0, .10)
+CHAMBER = (-34, 104, 20, 88, 0, .34)
+PUNCH = (84, 84, 60, 8, 0, .10)
+CRANE = (108, 25, 10, 38, -20, 0)
+
+KUNGFU_ARMS = dict(
+    L=[(.3, REST), (.9, GUARD), (1.5, CHAMBER), (2.42, CHAMBER), (3.14, PUNCH), (3.2, PUNCH),
+       (3.94, CHAMBER), (5.9, CHAMBER), (6.8, CRANE), (7.1, CRANE), (8.2, REST)],
+    R=[(.3, REST), (.9, GUARD), (1.5, CHAMBER), (1.65, CHAMBER), (2.37, PUNCH), (2.42, PUNCH),
+       (3.14, CHAMBER), (5.9, CHAMBER), (6.8, CRANE), (7.1, CRANE), (8.2, REST)])
+
+# Sideways place, height and depth of the hips.
+KUNGFU_HIPS = [(.5, (0, 0, 0)), (1.6, (0, -.200, -.03)), (3.5, (0, -.200, -.03)),
+               (4.3, (-.175, -.045, 0)), (5.5, (-.175, -.045, 0)), (6.3, (0, -.170, -.03)),
+               (7.1, (0, -.170, -.03)), (8.2, (0, 0, 0))]
+
+# The balls of the feet: x, y, z, yaw, heel, toe (the foot against the toes while it is lifted).
+WIDE = (.17, 0, 0, 18, 0, 0)
+KNEE_UP = (-.02, .40, .24, 0, 14, 0)
+KICK = (-.03, .58, .64, 0, -42, -8)
+KUNGFU_LEFT = [(.4, (0,) * 6), (.9, WIDE), (4.0, WIDE), (4.55, KNEE_UP), (4.6, KNEE_UP), (5.0, KICK),
+               (5.05, KICK), (5.45, KNEE_UP), (6.05, WIDE), (7.2, WIDE), (7.7, (0,) * 6)]
+KUNGFU_RIGHT = [(.9, (0,) * 6), (1.4, (-.17, 0, 0, -18, 0, 0)), (7.7, (-.17, 0, 0, -18, 0, 0)),
+                (8.2, (0,) * 6)]
+
+
+def hop(t, moves, height=.035):
+    """How high a foot is that is lifted in the times [(start, end), ...]."""
+    return sum(height * np.sin(np.pi * (t - a) / (b - a)) ** 2 for a, b in moves if a < t < b)
+
+
+def kungfu(p, t, length=9.):
+    """Horse stance, a punch of each hand, a front kick of the left leg, arms up as a crane."""
+    hips = track(KUNGFU_HIPS, t)
+    low = -hips[1] / .2
+    twist = track([(1.7, [0.]), (2.35, [14.]), (2.45, [14.]), (3.1, [-14.]), (3.2, [-14.]), (3.8, [0.])], t)[0]
+    kick = track([(4.5, [0.]), (5.0, [1.]), (5.1, [1.]), (5.7, [0.])], t)[0]
+    torso(p, (hips, (6 * low - 6 * kick, .4 * twist, 0)), spine=(-3 * low, .3 * twist, 0),
+          chest=(-3 * low - 2 * kick, .5 * twist, 0), neck=(0, -.5 * twist, 0),
+          head=(4 * kick, -.6 * twist, 0))
+    for side in 'LR':
+        p.arm(side, *track(KUNGFU_ARMS[side], t))
+    left, right = track(KUNGFU_LEFT, t), track(KUNGFU_RIGHT, t)
+    left[1] += hop(t, [(.4, .9), (7.2, 7.7)])
+    right[1] += hop(t, [(.9, 1.4), (7.7, 8.2)])
+    p.leg('L', left[:3], left[3], left[4], left[5] if 4. < t < 6.05 else None, aim=1.5 * left[3])
+    p.leg('R', right[:3], right[3], right[4], aim=1.5 * right[3])
+
+
+# Steps of the swing: start, end, lift, (x, z). The turn is on the ball of the left foot.
+SPIN = (4.0, 6.05)
+SWING_LEFT = [(0, 0, 0, (0, 0)), (.6, .9, .04, (.17, 0)), (1.3, 1.6, .04, (.28, 0)),
+              (2.15, 2.45, .04, (.04, 0)), (2.9, 3.2, .05, (0, -.15)), (3.3, 3.6, .05, (0, 0)),
+              (6.3, 6.6, .04, (.17, 0)), (7.0, 7.3, .04, (0, .0))]
+SWING_RIGHT = [(0, 0, 0, (0, 0)), (.95, 1.25, .04, (.14, 0)), (1.8, 2.1, .04, (.02, 0)),
+               (2.5, 2.8, .04, (-.10, 0)), (3.62, 3.92, .04, (0, 0)), (6.65, 6.95, .04, (.12, 0)),
+               (7.35, 7.65, .04, (0, 0))]
+SWING_HIPS = [(.4, (0, 0)), (1.5, (.20, 0)), (2.7, (-.04, 0)), (3.05, (-.05, -.05)), (3.5, (-.03, 0)),
+              (3.95, (0, 0)), (6.2, (0, 0)), (6.8, (.13, 0)), (7.7, (0, 0))]
+
+
+def swing(p, t, length=9.):
+    """Triple steps to the left and to the right, a rock step, and a whole turn with spread arms."""
+    e = envelope(t, length, 1.2)
+    spread = track([(3.5, [0.]), (4.4, [1.]), (5.6, [1.]), (6.4, [0.])], t)[0]
+    yaw = 360 * smooth_linear((t - SPIN[0]) / (SPIN[1] - SPIN[0]), .25)
+    carried = track([(3.92, [0.]), (4.4, [1.]), (5.6, [1.]), (6.1, [0.])], t)[0]
+    beat = wave(t, 1.)
+    bounce = (-.024 - .010 * wave(t, .5)) * e * (1 - .6 * carried)
+
+    # The hips come over the left foot for the turn.
+    at = track(SWING_HIPS, t)
+    pivot = p.joint('toe.L') / p.scale * [1, 0, 1] + [0, 0, -.04]
+    offset = np.array([at[0], 0, at[1]])
+    offset = pivot + turn((0, 1, 0), yaw) @ ((offset - pivot) * (1 - .65 * carried)) if carried else offset
+    torso(p, (offset + [0, bounce - .004 * carried, 0], (3 * e, 5 * beat * e * (1 - spread), 3 * beat * e * (1 - spread))),
+          spine=(0, -4 * beat * e * (1 - spread), -3 * beat * e * (1 - spread)),
+          chest=(0, -6 * beat * e * (1 - spread), 0), head=(-2 * e, 5 * beat * e * (1 - spread), 0), yaw=yaw)
+
+    for side, k, plan in (('L', 1, SWING_LEFT), ('R', -1, SWING_RIGHT)):
+        groove = e * (1 - spread)
+        p.arm(side, 45 + (2 + 5 * k * beat) * groove + 33 * spread, (30 + 20 * k * beat) * groove,
+              25 * groove, (52 + 12 * k * beat) * groove + 8 * spread)
+        (x, z), lift = steps(plan, t)
+        rest = p.joint('toe.' + side) / p.scale * [1, 0, 1]
+        ball = rest + [x, 0, z]
+        heel = 420 * lift
+        if side == 'R':  # carried around, a little closer and lifted
+            ball = pivot + turn((0, 1, 0), yaw) @ (ball - pivot + carried * np.array([.07, 0, -.10]))
+            lift, heel = lift + .09 * carried, heel + 30 * carried
+        else:
+            heel += 14 * carried
+        p.leg(side, ball - rest + [0, lift, 0], yaw, heel + 3 * e)
+
+
+CLIPS = dict(dance=(dance, 8.), walk=(walk, 6.), turn=(turning, 9.), kungfu=(kungfu, 9.),
+             swing=(swing, 9.))
 
 
 def clips_of(name):

@@ -86,13 +86,14 @@ class Poser:
     def set_world(self, name, world):
         self.set(name, self.world[self.parent(name)].T @ world)
 
-    def arm(self, side, down, front, twist=0, elbow=0, wrist=0, shrug=None):
+    def arm(self, side, down, front, twist=0, elbow=0, wrist=0, out=0):
         """`down`: angle from hanging (90 is level); `front`: 0 sideways, 90 forwards, -90 back.
 
-        `elbow` bends the forearm; with no twist it goes forwards when the arm is at the side.
+        `elbow` bends the forearm; with no twist it goes forwards when the arm is at the side. `out`
+        leans the upper arm away from the trunk.
         """
         mirror = 1 if side == 'L' else -1
-        rise = max(0., down - 60) * .22 if shrug is None else shrug
+        rise = max(0., down - 60) * .22
         follow = .18 * front * np.sin(np.radians(min(down, 90)))
         self.set('clavicle.' + side, turn((0, 0, 1), mirror * rise)
                  @ turn((0, 1, 0), -mirror * follow))
@@ -100,6 +101,7 @@ class Poser:
         rest = unit(self.joint(fore) - self.joint(upper))
         a, f = np.radians(down - rise), np.radians(front - follow)
         aim = vec(mirror * np.sin(a) * np.cos(f), -np.cos(a), np.sin(a) * np.sin(f))
+        aim = unit(aim + vec(mirror * out, 0, 0))
         self.set(upper, between(ARM * vec(mirror, 1, 1), aim) @ turn(rest, -mirror * twist))
         hinge = unit(np.cross(rest, vec(0, 0, 1)))
         self.set(fore, turn(hinge, elbow))

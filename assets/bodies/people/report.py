@@ -53,16 +53,50 @@ def print_checks(person, body, clips):
                                      is_closed_manifold(vertices, triangles),
                                      len(crossing_pairs(vertices, triangles)),
                                      1000 * edges.min(), 1000 * edges.max()))
-    rig = Rig(person['joints'])
+    rig = Rig(person)
+    bone = weights.argmax(1)
+    arms = np.isin(bone, [rig.index[n + s] for n in ('forearm', 'hand') for s in ('.L', '.R')])
+    trunk = ~arms & ~np.isin(bone, [rig.index['upper_arm' + s] for s in ('.L', '.R')])
     for clip in clips:
         times, local, _, world, joints = sample(rig, clip)
         frames = [rig.skin(vertices, weights, w, j) for w, j in zip(world, joints)]
         pairs = [len(crossing_pairs(f, triangles)) for f in frames[::5]]
         print('  %-7s %4.1f s, pairs that cross: at most %d, in %d of %d frames; lowest point %.1f mm; '
-              'hands to %.2f m/s; feet slip to %.0f mm/s'
+              'hands to %.2f m/s, %.0f mm from the body; feet slip to %.0f mm/s'
               % (clip, times[-1], max(pairs), sum(n > 0 for n in pairs), len(pairs),
                  1000 * min(f[:, 1].min() for f in frames), hand_speed(rig, joints),
+                 1000 * min(gap(f, triangles, arms, trunk) for f in frames[::5]),
                  1000 * slip(rig, joints)))
+
+
+def gap(vertices, triangles, arms, trunk):
+    """The least distance from vertices of the lower arms to the trunk, the legs and the head.
+
+    Distances to vertices find the closest places, the faces around these give the distance.
+    """
+    a, others = vertices[arms], np.flatnonzero(trunk)
+    b = vertices[others]
+    near = b - .5 * (a.min(0) + a.max(0))
+    keep = (np.abs(near) < .5 * (a.max(0) - a.min(0)) + .1).all(1)
+    others, b = others[keep], b[keep]
+    square = (a * a).sum(1)[:, None] + (b * b).sum(1) - 2 * a @ b.T
+    nearest = square.argmin(1)
+    first = np.argsort(square[np.arange(len(a)), nearest])[:12]
+    least = np.inf
+    for p, v in zip(a[first], others[nearest[first]]):
+        for face in triangles[(triangles == v).any(1)]:
+            least = min(least, point_triangle(p, *vertices[face]))
+    return least
+
+
+def point_triangle(p, a, b, c):
+    """Distance of a point to a triangle, by its edges and by its plane."""
+    n = unit(np.cross(b - a, c - a))
+    inside = all(np.cross(v - u, p - u) @ n >= 0 for u, v in ((a, b), (b, c), (c, a)))
+    if inside:
+        return abs((p - a) @ n)
+    return min(np.linalg.norm(p - u - np.clip((p - u) @ (v - u) / ((v - u) @ (v - u)), 0, 1) * (v - u))
+               for u, v in ((a, b), (b, c), (c, a)))
 
 
 def hand_speed(rig, joints):

@@ -23,7 +23,8 @@ MOST = 4  # bones that move one vertex
 class Rig:
     """names, parents (numbers, -1 for none), heads and tails (n, 3), thickness."""
 
-    def __init__(self, joints):
+    def __init__(self, person):
+        joints = person['joints']
         rows = [(n, joints[a], joints[b], p, r) for n, a, b, p, r in MIDDLE]
         for suffix, mirror in (('.L', vec(1, 1, 1)), ('.R', vec(-1, 1, 1))):
             for n, a, b, p, r in SIDE:
@@ -34,7 +35,7 @@ class Rig:
         self.parents = [self.index[row[3]] if row[3] else -1 for row in rows]
         self.heads = np.array([row[1] for row in rows])
         self.tails = np.array([row[2] for row in rows])
-        self.thickness = np.array([row[4] for row in rows])
+        self.thickness = np.array([row[4] for row in rows]) * person['scale']
 
     def skin(self, vertices, weights, rotations, positions):
         """Linear blend skinning: world rotations (bones, 3, 3) and positions of the joints."""

@@ -48,7 +48,7 @@ def body_sheet(person, vertices, triangles, size=520):
 
 def clip_sheet(person, body, clip, every=10, columns=8):
     vertices, triangles, weights = body
-    rig = Rig(person['joints'])
+    rig = Rig(person)
     _, _, _, world, joints = sample(rig, clip)
     h = person['height']
     return row([draw(rig.skin(vertices, weights, world[n], joints[n]), triangles, vec(0, h / 2, 0),
