@@ -55,7 +55,8 @@ def check_surface(vertices, triangles):
             following[edge] = t[(k + 2) % 3]
     for a, b in following:
         expect((b, a) in following, 'edge %s is at a border', (a, b))
-    expect(len(vertices) - len(following) // 2 + len(triangles) == 2, 'Euler characteristic is not 2')
+    euler = len(vertices) - len(following) // 2 + len(triangles)
+    expect(euler == 2, 'the Euler characteristic is %d', euler)
 
     # Walking around a vertex must pass all its faces.
     valence, first = {}, {}
@@ -72,8 +73,9 @@ def check_surface(vertices, triangles):
     volume = 0.
     for t in triangles:
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (vertices[v] for v in t)
-        volume += (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6
-    expect(.02 < volume < .12, 'volume is %g m3: the faces look inwards, or the size is wrong', volume)
+        volume += (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz)
+                   + az * (bx * cy - by * cx)) / 6
+    expect(.02 < volume < .12, 'volume %g m3: faces look inwards, or the size is wrong', volume)
 
 
 def check_size(vertices, height):
@@ -112,7 +114,8 @@ def check_clips(glb, wanted):
             expect(len(times) == len(values), 'clip %s has %d times', name, len(times))
             first, last = values[0], values[-1]
             if len(first) == 4:  # a quaternion and its negative are one rotation
-                expect(all(abs(math.hypot(*q) - 1) < 1e-4 for q in values), '%s: not a rotation', name)
+                expect(all(abs(math.hypot(*q) - 1) < 1e-4 for q in values),
+                       '%s: not a rotation', name)
                 if sum(a * b for a, b in zip(first, last)) < 0:
                     last = [-x for x in last]
             expect(max(abs(a - b) for a, b in zip(first, last)) < 1e-5, 'clip %s jumps', name)

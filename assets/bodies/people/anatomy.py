@@ -28,10 +28,11 @@ class Body:
                                        vec(1, j['shoulder'][1] + .08, .2), self.arm), .035)
         value = join(value, inside_box(q, vec(-.02, -.1, -.3), vec(.3, j['hip'][1] + .28, .4),
                                        self.leg), .055)
-        value = self.crease(q, value)
+        value = self.collarbones(q, value)
         low = j['neck'] - vec(.3, .14, .3)
         value = join(value, inside_box(q, low, vec(.3, 3, .4), self.neck), .04)
-        return join(value, inside_box(q, j['head'] - vec(.3, .12, .3), vec(.3, 3, .4), self.head), .02)
+        low = j['head'] - vec(.3, .12, .3)
+        return join(value, inside_box(q, low, vec(.3, 3, .4), self.head), .02)
 
     # --- torso ---
 
@@ -57,11 +58,12 @@ class Body:
             back = j['chest'] + vec(.078, .125, -.070) * s
             tilt = [unit(vec(1, .25, .30)), unit(vec(-.25, 1, -.2)), unit(vec(-.3, .1, 1))]
             value = join(value, ellipsoid(q, back, vec(.040, .058, .024) * s, tilt), .045)
-        furrow = cone(q, j['hips'] + vec(0, .02, -.128), j['chest'] + vec(0, .15, -.130), .010, .014)
+        furrow = cone(q, j['hips'] + vec(0, .02, -.128), j['chest'] + vec(0, .15, -.130),
+                      .010, .014)
         return carve(value, furrow, .055)
 
-    def crease(self, q, value):
-        """Collarbones, over the shoulder's joint with the arm."""
+    def collarbones(self, q, value):
+        """From the pit of the throat to the shoulders, over the joint with the arms."""
         r = self.person['collarbone']
         if not r:
             return value
@@ -78,11 +80,14 @@ class Body:
         j, r = self.joints, self.person['arm']
         s, e, w = j['shoulder'], j['elbow'], j['wrist']
         fore = w - e
-        value = limb(q, [s, s + .45 * (e - s), e - .06 * (e - s), e + .25 * fore, e + .62 * fore, w], r)
-        biceps = ellipsoid(q, s + .55 * (e - s) + vec(0, 0, .008), vec(r[1] * .95, .075, r[1] * .95),
+        value = limb(q, [s, s + .45 * (e - s), e - .06 * (e - s), e + .25 * fore, e + .62 * fore,
+                         w], r)
+        biceps = ellipsoid(q, s + .55 * (e - s) + vec(0, 0, .008),
+                           vec(r[1] * .95, .075, r[1] * .95),
                            [unit(vec(-ARM[1], ARM[0], 0)), ARM, THUMB])
         value = join(value, biceps, .03)
-        elbow = ellipsoid(q, e + vec(0, 0, -r[2] * .42) + .004 * ARM, vec(r[2] * .62, .028, r[2] * .72),
+        elbow = ellipsoid(q, e + vec(0, 0, -r[2] * .42) + .004 * ARM,
+                          vec(r[2] * .62, .028, r[2] * .72),
                           [PALM, ARM, THUMB])
         value = join(value, elbow, .02)
         hand = inside_box(q, w - .20, w + .24, self.hand)
@@ -97,8 +102,10 @@ class Body:
 
         # Fingers from the forefinger to the little finger: base and length, slightly fanned.
         fingers = None
-        for side, base, length, radius in ((.0280, .091, .071, .0092), (.0095, .095, .079, .0096),
-                                           (-.0090, .092, .073, .0092), (-.0265, .083, .058, .0084)):
+        for side, base, length, radius in ((.0280, .091, .071, .0092),
+                                           (.0095, .095, .079, .0096),
+                                           (-.0090, .092, .073, .0092),
+                                           (-.0265, .083, .058, .0084)):
             fan = side * .55
             points, angle = [vec(base, -.001, side)], .06
             for part in (.45, .31, .24):
@@ -107,7 +114,8 @@ class Body:
                 angle += .24
             finger = limb(p, points, [radius * 1.08, radius, radius * .95, radius * .86], 3)
             fingers = finger if fingers is None else join(fingers, finger, .005)
-            bone = cone(p, vec(.012, -.001, side * .55), vec(base, -.001, side), .0135, radius * 1.08)
+            bone = cone(p, vec(.012, -.001, side * .55), vec(base, -.001, side),
+                        .0135, radius * 1.08)
             value = join(value, bone, .018)
         value = join(value, fingers, .008)
 
@@ -124,21 +132,25 @@ class Body:
         j, r, t = self.joints, self.person['leg'], self.person
         hip, knee, ankle = j['hip'], j['knee'], j['ankle']
         thigh, shin = knee - hip, ankle - knee
-        value = limb(q, [hip + vec(-.012, .050, 0), hip + vec(.004, -.03, 0), hip + .35 * thigh, hip + .70 * thigh, knee,
+        value = limb(q, [hip + vec(-.012, .050, 0), hip + vec(.004, -.03, 0),
+                         hip + .35 * thigh, hip + .70 * thigh, knee,
                          knee + .18 * shin + vec(0, 0, -.004), knee + .38 * shin + vec(0, 0, -.008),
-                         knee + .68 * shin + vec(0, 0, -.004), ankle + vec(0, .035, -.002)], [.84 * r[0]] + r)
+                         knee + .68 * shin + vec(0, 0, -.004), ankle + vec(0, .035, -.002)],
+                     [.84 * r[0]] + r)
 
         # Calf: the inner head hangs lower than the outer one.
         c = r[4]
         for x, along, out in ((-.014, .30, .62), (.014, .25, .60)):
             center = knee + along * shin + vec(x, 0, -c * .50)
             value = join(value, ellipsoid(q, center, vec(c * .62, .098 * t['calf'], c * out)), .03)
-        value = join(value, cone(q, knee + .50 * shin + vec(0, 0, -.014), ankle + vec(0, -.02, -.030),
-                                 .016, .012), .04)
+        tendon = cone(q, knee + .50 * shin + vec(0, 0, -.014), ankle + vec(0, -.02, -.030),
+                      .016, .012)
+        value = join(value, tendon, .04)
 
         # Knee cap, and the muscle over it.
         k = r[3]
-        value = join(value, ellipsoid(q, knee + vec(0, .004, k * .68), vec(k * .46, .032, k * .40)), .040)
+        cap = ellipsoid(q, knee + vec(0, .004, k * .68), vec(k * .46, .032, k * .40))
+        value = join(value, cap, .040)
         value = join(value, ellipsoid(q, hip + .55 * thigh + vec(0, 0, r[1] * .22),
                                       vec(r[1] * .80, .16, r[1] * .80)), .04)
         foot = inside_box(q, vec(-.1, -.1, -.3), vec(.4, ankle[1] + .14, .5), self.foot)
@@ -153,24 +165,33 @@ class Body:
         p = q - a
         p = np.stack([p @ out, q[:, 1], p @ forward], -1) / k  # outwards, up, forwards
 
-        value = ellipsoid(p, vec(0, .030, -.028), vec(.030, .034, .033))                    # heel
-        value = join(value, cone(p, vec(.001, .060, .002), vec(-.006, .030, .100), .0315, .022), .03)
-        value = join(value, flat_cone(p, vec(.008, .020, .005), vec(.012, .018, .100), .024, .030,
-                                      vec(0, 1, 0), .75), .03)                             # outer edge
-        value = join(value, flat_cone(p, vec(-.006, .022, .105), vec(.022, .018, .098), .026, .024,
-                                      vec(0, 1, 0), .80), .02)                             # ball
+        # Heel, instep, outer edge and ball.
+        up = vec(0, 1, 0)
+        value = ellipsoid(p, vec(0, .030, -.028), vec(.030, .034, .033))
+        value = join(value, cone(p, vec(.001, .060, .002), vec(-.006, .030, .100),
+                                 .0315, .022), .03)
+        value = join(value, flat_cone(p, vec(.008, .020, .005), vec(.012, .018, .100),
+                                      .024, .030, up, .75), .03)
+        value = join(value, flat_cone(p, vec(-.006, .022, .105), vec(.022, .018, .098),
+                                      .026, .024, up, .80), .02)
+
+        # Toes from the big one outwards: place, from where to where, radius, height.
         toes = None
-        for x, start, end, radius, height in ((-.020, .125, .173, .0130, .0135), (.000, .128, .172, .0095, .0115),
-                                              (.0160, .122, .162, .0090, .0110), (.0305, .112, .150, .0086, .0105),
+        for x, start, end, radius, height in ((-.0200, .125, .173, .0130, .0135),
+                                              (.0000, .128, .172, .0095, .0115),
+                                              (.0160, .122, .162, .0090, .0110),
+                                              (.0305, .112, .150, .0086, .0105),
                                               (.0435, .098, .136, .0084, .0100)):
-            toe = cone(p, vec(x * .92, height + .004, start - .02), vec(x, height, end - radius), radius * 1.05,
-                       radius)
+            toe = cone(p, vec(x * .92, height + .004, start - .02), vec(x, height, end - radius),
+                       radius * 1.05, radius)
             toes = toe if toes is None else join(toes, toe, .004)
         value = join(value, toes, .012)
-        for x, y, z in ((-.027, .078, .000), (.029, .070, -.008)):                          # ankle bones
+
+        # Ankle bones, the arch and the flat sole.
+        for x, y, z in ((-.027, .078, .000), (.029, .070, -.008)):
             value = join(value, ellipsoid(p, vec(x, y, z), vec(.0090, .012, .012)), .016)
-        value = carve(value, ellipsoid(p, vec(-.040, .000, .040), vec(.022, .016, .040)), .02)  # arch
-        return carve(value * k, q[:, 1], .008)                                               # sole
+        value = carve(value, ellipsoid(p, vec(-.040, 0, .040), vec(.022, .016, .040)), .02)
+        return carve(value * k, q[:, 1], .008)
 
     # --- neck and head ---
 
@@ -189,15 +210,19 @@ class Body:
         k = self.person['head']
         base = self.joints['head'] + vec(0, -.042, .010) * k  # the chin's height, under the ears
         p = (q - base) / k
-        value = ellipsoid(p, vec(0, .138, -.010), vec(.0715, .083, .092))                   # skull
-        value = join(value, ellipsoid(p, vec(0, .080, .024), vec(.0540, .080, .0575)), .04)  # face
-        value = join(value, ellipsoid(p, vec(0, .146, .021), vec(.057, .050, .054)), .03)   # forehead
+        # Skull, face, forehead, jaw, chin, cheekbones and cheeks.
+        value = ellipsoid(p, vec(0, .138, -.010), vec(.0715, .083, .092))
+        for center, radii, width in (
+                (vec(0, .080, .024), vec(.0540, .080, .0575), .04),
+                (vec(0, .146, .021), vec(.057, .050, .054), .03)):
+            value = join(value, ellipsoid(p, center, radii), width)
         jaw = cone(p, vec(.034, .048, .010), vec(.007, .016, .062), .0170, .0135)
         value = join(value, jaw, .034)
-        value = join(value, ellipsoid(p, vec(0, .0135, .066), vec(.015, .0130, .0140)), .018)  # chin
-        value = join(value, ellipsoid(p, vec(.040, .076, .050), vec(.021, .020, .021)), .035)  # cheek
-        value = join(value, ellipsoid(p, vec(.029, .044, .046),
-                                      vec(.021, .026, .022) * self.person['cheek']), .035)
+        for center, radii, width in (
+                (vec(0, .0135, .066), vec(.015, .0130, .0140), .018),
+                (vec(.040, .076, .050), vec(.021, .020, .021), .035),
+                (vec(.029, .044, .046), vec(.021, .026, .022) * self.person['cheek'], .035)):
+            value = join(value, ellipsoid(p, center, radii), width)
         brow = np.minimum(cone(p, vec(.010, .1265, .0730), vec(.030, .1310, .0690), .0065, .0065),
                           cone(p, vec(.030, .1310, .0690), vec(.047, .125, .052), .0065, .0060))
         value = join(value, brow, .016)
@@ -222,7 +247,8 @@ class Body:
         # Ears lean outwards and back.
         axes = [unit(vec(1, .1, .35)), unit(vec(-.1, 1, -.18)), unit(vec(-.35, .15, 1))]
         ear = ellipsoid(p, vec(.0725, .102, -.012), vec(.0070, .0275, .0160), axes)
-        ear = carve(ear, ellipsoid(p, vec(.0805, .104, -.006), vec(.0050, .0165, .0090), axes), .006)
+        shell = ellipsoid(p, vec(.0805, .104, -.006), vec(.0050, .0165, .0090), axes)
+        ear = carve(ear, shell, .006)
         return self.hair(p, join(value, ear, .006)) * k
 
     def hair(self, p, value):

@@ -10,13 +10,14 @@ def edge_counts(triangles):
 
 
 def is_closed_manifold(vertices, triangles):
-    """Each edge has two faces of opposite direction, each vertex one ring of faces, Euler number 2."""
+    """Each edge has two faces of opposite direction, each vertex one ring; Euler number 2."""
     counts, directed = edge_counts(triangles)
     if (counts != 2).any() or (directed != 1).any():
         return False
     if len(vertices) - len(counts) + len(triangles) != 2:
         return False
-    following = {(t[k], t[(k + 1) % 3]): t[(k + 2) % 3] for t in triangles.tolist() for k in range(3)}
+    following = {(t[k], t[(k + 1) % 3]): t[(k + 2) % 3]
+                 for t in triangles.tolist() for k in range(3)}
     valence = np.bincount(triangles.ravel(), minlength=len(vertices))
     start = {}
     for a, b in following:

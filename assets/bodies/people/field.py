@@ -29,7 +29,8 @@ def cone(p, a, b, radius_a, radius_b):
     """A segment whose radius goes from `radius_a` to `radius_b`, with round ends."""
     d = b - a
     t = np.clip(((p - a) @ d) / (d @ d), 0, 1)
-    return np.linalg.norm(p - (a + t[:, None] * d), axis=-1) - (radius_a + t * (radius_b - radius_a))
+    return np.linalg.norm(p - (a + t[:, None] * d), axis=-1) - (radius_a
+                                                                + t * (radius_b - radius_a))
 
 
 def flat_cone(p, a, b, radius_a, radius_b, axis, thickness):
@@ -53,7 +54,7 @@ def curve(points, per_piece=4):
 
 
 def limb(p, points, radii, per_piece=4):
-    """A tube around a smooth curve: the distance to the curve less the radius where it is nearest."""
+    """A tube around a smooth curve: its distance less the radius where the curve is nearest."""
     rows = curve(np.column_stack([np.array(points), radii]), per_piece)
     nearest = np.full(len(p), np.inf)
     value = np.empty(len(p))
@@ -79,7 +80,7 @@ def carve(a, b, width):
 
 
 def inside_box(p, low, high, shape):
-    """The value of `shape` inside a box that holds it with room for its joints; far away outside."""
+    """`shape` inside a box that holds it with room for its joints; far away outside."""
     value = np.full(len(p), 1.0)
     near = ((p >= low) & (p <= high)).all(-1)
     if near.any():

@@ -112,7 +112,8 @@ def read_glb(path):
     def array(accessor, kind, width):
         a = document['accessors'][accessor]
         view = document['bufferViews'][a['bufferView']]
-        return np.frombuffer(binary, kind, a['count'] * width, view['byteOffset']).reshape(-1, width)
+        flat = np.frombuffer(binary, kind, a['count'] * width, view['byteOffset'])
+        return flat.reshape(-1, width)
     primitive = document['meshes'][0]['primitives'][0]
     names = primitive['attributes']
     vertices = array(names['POSITION'], '<f4', 3).astype(float)

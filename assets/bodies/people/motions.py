@@ -1,7 +1,7 @@
 """The clips: dance, walk, turn, kungfu and swing.
 
-Each clip starts and ends in the rest pose (A-pose), in which garments are put on; in between a smooth
-envelope brings the movement in and out. Clips are sampled at FPS keys a second.
+Each clip starts and ends in the rest pose (A-pose), in which garments are put on; in between a
+smooth envelope brings the movement in and out. Clips are sampled at FPS keys a second.
 """
 import numpy as np
 
@@ -53,14 +53,16 @@ def dance(p, t, length=8.):
     """A sway from foot to foot, two seconds each way and back, with waving arms."""
     e = envelope(t, length, 1.4)
     s, c = wave(t, 2.), wave(t, 2., .25)
-    quick = wave(t, 1., .25)
-    torso(p, ((.055 * s * e, (-.024 - .008 * quick) * e, 0), (2 * e, 13 * wave(t, 4.) * e, 6 * s * e)),
-          spine=(2 * e, -5 * wave(t, 4.) * e, -7 * s * e), chest=(-2 * e, -9 * wave(t, 4.) * e, -5 * s * e),
-          neck=(0, 4 * wave(t, 4.) * e, 2 * s * e), head=(-2 * e, 8 * wave(t, 4., .05) * e, 4 * s * e))
+    slow, quick = wave(t, 4.), wave(t, 1., .25)
+
+    # The hips sway and turn; what is above leans and turns against them.
+    torso(p, ((.055 * s * e, (-.024 - .008 * quick) * e, 0), (2 * e, 13 * slow * e, 6 * s * e)),
+          spine=(2 * e, -5 * slow * e, -7 * s * e), chest=(-2 * e, -9 * slow * e, -5 * s * e),
+          neck=(0, 4 * slow * e, 2 * s * e), head=(-2 * e, 8 * wave(t, 4., .05) * e, 4 * s * e))
     for side, k in (('L', 1), ('R', -1)):
         free = smooth(.5 - .75 * k * s)  # the foot without the weight
-        p.arm(side, 45 + (22 + 24 * k * s) * e, (14 + 16 * k * c) * e, 20 * e, (28 + 18 * k * c) * e,
-              10 * k * c * e)
+        p.arm(side, 45 + (22 + 24 * k * s) * e, (14 + 16 * k * c) * e, 20 * e,
+              (28 + 18 * k * c) * e, 10 * k * c * e)
         p.leg(side, (0, 0, 0), yaw=0, heel=(4 + 24 * free) * e)
 
 
@@ -70,6 +72,8 @@ def walk(p, t, length=6.):
     period = 1.2
     s = wave(t, period)
     bob = wave(t, period / 2, .25)
+
+    # The hips lean over the standing foot, and the shoulders turn against the hips.
     torso(p, ((.022 * -s * e, (-.020 - .012 * bob) * e, 0), (3 * e, 6 * s * e, -3 * s * e)),
           spine=(1 * e, -5 * s * e, 2 * s * e), chest=(-1 * e, -7 * s * e, 2 * s * e),
           neck=(0, 3 * s * e, 0), head=(0, 3 * s * e, 0))
@@ -85,10 +89,14 @@ def turning(p, t, length=9.):
     count, first, last = 20, .9, length - .9
     beat = (last - first) / count
     yaw = 360 * smooth_linear((t - first) / (last - first))
+
+    # The weight goes to the foot that stands.
     sway = wave(t - first, 2 * beat) * e
     place = -.022 * sway * (turn((0, 1, 0), yaw) @ np.array([1., 0, 0]))
     torso(p, (place + [0, -.010 * e, 0], (0, 0, 2.5 * sway)), chest=(-1 * e, 0, -3 * sway),
           head=(0, 10 * e, 0), yaw=yaw)
+
+    # Left and right foot take turns; each step goes a little ahead of the body.
     for side, k in (('L', 1), ('R', -1)):
         plan = [(0, 0, 0, [0.])]
         for n in range(count):
@@ -117,8 +125,8 @@ def smooth_linear(x, ramp=.12):
     return speed * (x - ramp / 2)
 
 
-# Arms of the kung-fu clip: down, front, twist, elbow, wrist, out. An arm that goes back is one that goes
-# forwards by a negative angle: so a punch passes the hip and not the side.
+# Arms of the kung-fu clip: down, front, twist, elbow, wrist, out. An arm that goes back is one that
+# goes forwards by a negative angle: so a punch passes the hip and not the side.
 REST = (45, 0, 0, 0, 0, 0)
 GUARD = (34, 18, 10, 80, 0, .10)
 CHAMBER = (-34, 104, 20, 88, 0, .34)
@@ -140,8 +148,8 @@ KUNGFU_HIPS = [(.5, (0, 0, 0)), (1.6, (0, -.200, -.03)), (3.5, (0, -.200, -.03))
 WIDE = (.17, 0, 0, 18, 0, 0)
 KNEE_UP = (-.02, .40, .24, 0, 14, 0)
 KICK = (-.03, .58, .64, 0, -42, -8)
-KUNGFU_LEFT = [(.4, (0,) * 6), (.9, WIDE), (4.0, WIDE), (4.55, KNEE_UP), (4.6, KNEE_UP), (5.0, KICK),
-               (5.05, KICK), (5.45, KNEE_UP), (6.05, WIDE), (7.2, WIDE), (7.7, (0,) * 6)]
+KUNGFU_LEFT = [(.4, (0,) * 6), (.9, WIDE), (4.0, WIDE), (4.55, KNEE_UP), (4.6, KNEE_UP),
+               (5.0, KICK), (5.05, KICK), (5.45, KNEE_UP), (6.05, WIDE), (7.2, WIDE), (7.7, (0,) * 6)]
 KUNGFU_RIGHT = [(.9, (0,) * 6), (1.4, (-.17, 0, 0, -18, 0, 0)), (7.7, (-.17, 0, 0, -18, 0, 0)),
                 (8.2, (0,) * 6)]
 
@@ -155,11 +163,15 @@ def kungfu(p, t, length=9.):
     """Horse stance, a punch of each hand, a front kick of the left leg, arms up as a crane."""
     hips = track(KUNGFU_HIPS, t)
     low = -hips[1] / .2
-    twist = track([(1.7, [0.]), (2.35, [14.]), (2.45, [14.]), (3.1, [-14.]), (3.2, [-14.]), (3.8, [0.])], t)[0]
+
+    # The shoulders turn into the punches, and the trunk leans back for the kick.
+    twist = track([(1.7, [0.]), (2.35, [14.]), (2.45, [14.]), (3.1, [-14.]), (3.2, [-14.]),
+                   (3.8, [0.])], t)[0]
     kick = track([(4.5, [0.]), (5.0, [1.]), (5.1, [1.]), (5.7, [0.])], t)[0]
     torso(p, (hips, (6 * low - 6 * kick, .4 * twist, 0)), spine=(-3 * low, .3 * twist, 0),
           chest=(-3 * low - 2 * kick, .5 * twist, 0), neck=(0, -.5 * twist, 0),
           head=(4 * kick, -.6 * twist, 0))
+
     for side in 'LR':
         p.arm(side, *track(KUNGFU_ARMS[side], t))
     left, right = track(KUNGFU_LEFT, t), track(KUNGFU_RIGHT, t)
@@ -177,8 +189,8 @@ SWING_LEFT = [(0, 0, 0, (0, 0)), (.6, .9, .04, (.17, 0)), (1.3, 1.6, .04, (.28, 
 SWING_RIGHT = [(0, 0, 0, (0, 0)), (.95, 1.25, .04, (.14, 0)), (1.8, 2.1, .04, (.02, 0)),
                (2.5, 2.8, .04, (-.10, 0)), (3.62, 3.92, .04, (0, 0)), (6.65, 6.95, .04, (.12, 0)),
                (7.35, 7.65, .04, (0, 0))]
-SWING_HIPS = [(.4, (0, 0)), (1.5, (.20, 0)), (2.7, (-.04, 0)), (3.05, (-.05, -.05)), (3.5, (-.03, 0)),
-              (3.95, (0, 0)), (6.2, (0, 0)), (6.8, (.13, 0)), (7.7, (0, 0))]
+SWING_HIPS = [(.4, (0, 0)), (1.5, (.20, 0)), (2.7, (-.04, 0)), (3.05, (-.05, -.05)),
+              (3.5, (-.03, 0)), (3.95, (0, 0)), (6.2, (0, 0)), (6.8, (.13, 0)), (7.7, (0, 0))]
 
 
 def swing(p, t, length=9.):
@@ -188,27 +200,30 @@ def swing(p, t, length=9.):
     yaw = 360 * smooth_linear((t - SPIN[0]) / (SPIN[1] - SPIN[0]), .25)
     carried = track([(3.92, [0.]), (4.4, [1.]), (5.6, [1.]), (6.1, [0.])], t)[0]
     beat = wave(t, 1.)
+    groove = beat * e * (1 - spread)
     bounce = (-.024 - .010 * wave(t, .5)) * e * (1 - .6 * carried)
 
     # The hips come over the left foot for the turn.
     at = track(SWING_HIPS, t)
     pivot = p.joint('toe.L') / p.scale * [1, 0, 1] + [0, 0, -.04]
     offset = np.array([at[0], 0, at[1]])
-    offset = pivot + turn((0, 1, 0), yaw) @ ((offset - pivot) * (1 - .65 * carried)) if carried else offset
-    torso(p, (offset + [0, bounce - .004 * carried, 0], (3 * e, 5 * beat * e * (1 - spread), 3 * beat * e * (1 - spread))),
-          spine=(0, -4 * beat * e * (1 - spread), -3 * beat * e * (1 - spread)),
-          chest=(0, -6 * beat * e * (1 - spread), 0), head=(-2 * e, 5 * beat * e * (1 - spread), 0), yaw=yaw)
+    if carried:
+        offset = pivot + turn((0, 1, 0), yaw) @ ((offset - pivot) * (1 - .65 * carried))
+    torso(p, (offset + [0, bounce - .004 * carried, 0], (3 * e, 5 * groove, 3 * groove)),
+          spine=(0, -4 * groove, -3 * groove), chest=(0, -6 * groove, 0),
+          head=(-2 * e, 5 * groove, 0), yaw=yaw)
 
     for side, k, plan in (('L', 1, SWING_LEFT), ('R', -1, SWING_RIGHT)):
-        groove = e * (1 - spread)
-        p.arm(side, 45 + (2 + 5 * k * beat) * groove + 33 * spread, (30 + 20 * k * beat) * groove,
-              25 * groove, (52 + 12 * k * beat) * groove + 8 * spread)
+        free = e * (1 - spread)
+        p.arm(side, 45 + (2 + 5 * k * beat) * free + 33 * spread, (30 + 20 * k * beat) * free,
+              25 * free, (52 + 12 * k * beat) * free + 8 * spread)
         (x, z), lift = steps(plan, t)
         rest = p.joint('toe.' + side) / p.scale * [1, 0, 1]
         ball = rest + [x, 0, z]
         heel = 420 * lift
         if side == 'R':  # carried around, a little closer and lifted
-            ball = pivot + turn((0, 1, 0), yaw) @ (ball - pivot + carried * np.array([.07, 0, -.10]))
+            ball = ball - pivot + carried * np.array([.07, 0, -.10])
+            ball = pivot + turn((0, 1, 0), yaw) @ ball
             lift, heel = lift + .09 * carried, heel + 30 * carried
         else:
             heel += 14 * carried
@@ -217,10 +232,6 @@ def swing(p, t, length=9.):
 
 CLIPS = dict(dance=(dance, 8.), walk=(walk, 6.), turn=(turning, 9.), kungfu=(kungfu, 9.),
              swing=(swing, 9.))
-
-
-def clips_of(name):
-    return list(CLIPS)
 
 
 def sample(rig, name):

@@ -1,8 +1,8 @@
 """Who the bodies are: joints, radii and sizes, for the left side (x > 0) of an A-pose.
 
-A table is written as for a height of 1.70 m, so that proportions can be compared, and then scaled to
-the person's height: `joints` and `scale` are what the other modules read. Y is up, the person faces +z
-and stands on y = 0; the right side is the mirror image. Lengths are metres.
+A table is written as for a height of 1.70 m, so that proportions can be compared, and then scaled
+to the person's height: `joints` and `scale` are what the other modules read. Y is up, the person
+faces +z and stands on y = 0; the right side is the mirror image. Lengths are metres.
 """
 import math
 

@@ -100,12 +100,15 @@ def light(normal):
 
 def write_png(path, image):
     data = (np.clip(image, 0, 1) ** (1 / 1.15) * 255 + .5).astype(np.uint8)
-    rows = np.concatenate([np.zeros((data.shape[0], 1), np.uint8), data.reshape(data.shape[0], -1)], 1)
+    height, width = data.shape[:2]
+    rows = data.reshape(height, -1)
+    rows = np.diff(rows.astype(int), axis=0, prepend=0).astype(np.uint8)  # PNG's filter "up"
+    rows = np.concatenate([np.full((height, 1), 2, np.uint8), rows], 1)
 
     def chunk(kind, body):
         return (struct.pack('>I', len(body)) + kind + body
                 + struct.pack('>I', zlib.crc32(kind + body)))
     with open(path, 'wb') as f:
         f.write(b'\x89PNG\r\n\x1a\n')
-        f.write(chunk(b'IHDR', struct.pack('>IIBBBBB', data.shape[1], data.shape[0], 8, 2, 0, 0, 0)))
+        f.write(chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 2, 0, 0, 0)))
         f.write(chunk(b'IDAT', zlib.compress(rows.tobytes(), 9)) + chunk(b'IEND', b''))

@@ -1,8 +1,8 @@
 """Even triangles of a wanted size, finer where the shape is fine, on the surface of a field.
 
-Rounds of four passes (Botsch and Kobbelt 2004): collapse short edges, split long ones, flip edges for
-valences near six, smooth along the surface and put the vertices back onto it. An edge is collapsed
-only where the surface stays closed and 2-manifold, and no pass may fold a triangle over.
+Rounds of four passes (Botsch and Kobbelt 2004): collapse short edges, split long ones, flip edges
+for valences near six, smooth along the surface and put the vertices back onto it. An edge is
+collapsed only where the surface stays closed and 2-manifold, and no pass may fold a triangle over.
 """
 import math
 

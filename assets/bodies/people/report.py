@@ -15,34 +15,40 @@ def girths(person, vertices, triangles):
     def level(y, x=0., z=0., reach=None):
         return girth(vertices, triangles, vec(x, y, z), up, reach)
 
-    def widest(low, high, x=0., reach=None, pick=max):
+    def most(low, high, x=0., reach=None, pick=max):
         return pick(level(y, x, 0, reach) for y in np.linspace(low, high, 25))
+
+    def across(a, b, reach, share):
+        """Around the limb from a to b, at a share of its length."""
+        return girth(vertices, triangles, a + share * (b - a), unit(b - a), reach)
     hip, knee, ankle, shoulder = j['hip'], j['knee'], j['ankle'], j['shoulder']
     wide = shoulder[0] + .02  # the trunk without the arms
     shin = knee - ankle
-    arm = unit(j['elbow'] - shoulder)
-    neck_axis = unit(j['head'] - j['neck'])
-    found = {
-        'head': widest(j['head'][1] + .06, j['head'][1] + .13),
-        'neck': girth(vertices, triangles, .5 * (j['neck'] + j['head']), neck_axis, .12),
-        'bust' if person['female'] else 'chest': widest(j['chest'][1] + .02, j['chest'][1] + .09, 0, wide),
-        'waist': widest(j['spine'][1] - .02, j['chest'][1] - .02, 0, .25, min),
-        'hip': widest(hip[1] - .02, hip[1] + .10, 0, .30),
+    return {
+        'head with hair': most(j['head'][1] + .06, j['head'][1] + .13),
+        'neck': across(j['neck'], j['head'], .12, .5),
+        'bust or chest': most(j['chest'][1] + .02, j['chest'][1] + .09, 0, wide),
+        'waist': most(j['spine'][1] - .02, j['chest'][1] - .02, 0, .25, min),
+        'hip': most(hip[1] - .02, hip[1] + .10, 0, .30),
         'thigh': level(hip[1] - .11, hip[0], 0, .115 if hip[0] > .08 else .09),
         'knee': level(knee[1], knee[0], 0, .1),
-        'calf': widest(ankle[1] + .5 * shin[1], ankle[1] + .85 * shin[1], .5 * (knee + ankle)[0], .1),
+        'calf': most(ankle[1] + .5 * shin[1], ankle[1] + .85 * shin[1],
+                     .5 * (knee + ankle)[0], .1),
         'ankle': level(ankle[1] + .035, ankle[0], ankle[2], .08),
-        'upper arm': girth(vertices, triangles, shoulder + .45 * (j['elbow'] - shoulder), arm, .09),
-        'wrist': girth(vertices, triangles, j['wrist'], unit(j['wrist'] - j['elbow']), .08)}
-    return found
+        'upper arm': across(shoulder, j['elbow'], .09, .45),
+        'wrist': across(j['elbow'], j['wrist'], .08, .94)}
 
 
-def print_girths(person, body):
-    vertices, triangles, _ = body
-    print('%s: height %.3f m, volume %.1f l' % (person['name'], vertices[:, 1].max(),
-                                                1000 * volume(vertices, triangles)))
-    for name, value in girths(person, vertices, triangles).items():
-        print('  %-10s %5.1f cm' % (name, 100 * value))
+def print_girths(people):
+    """A table in Markdown; `people` are pairs of a person and a body."""
+    rows = [['', *(person['name'] for person, _ in people)], ['---'] * (len(people) + 1)]
+    rows.append(['height', *('%.1f' % (100 * body[0][:, 1].max()) for _, body in people)])
+    columns = [girths(person, *body[:2]) for person, body in people]
+    for name in columns[0]:
+        rows.append([name, *('%.1f' % (100 * column[name]) for column in columns)])
+    rows.append(['volume [l]', *('%.1f' % (1000 * volume(*body[:2])) for _, body in people)])
+    for row in rows:
+        print('| ' + ' | '.join(row) + ' |')
 
 
 def print_checks(person, body, clips):
@@ -61,8 +67,8 @@ def print_checks(person, body, clips):
         times, local, _, world, joints = sample(rig, clip)
         frames = [rig.skin(vertices, weights, w, j) for w, j in zip(world, joints)]
         pairs = [len(crossing_pairs(f, triangles)) for f in frames[::5]]
-        print('  %-7s %4.1f s, pairs that cross: at most %d, in %d of %d frames; lowest point %.1f mm; '
-              'hands to %.2f m/s, %.0f mm from the body; feet slip to %.0f mm/s'
+        print('  %-7s %4.1f s, pairs that cross: at most %d, in %d of %d frames; lowest point '
+              '%.1f mm; hands to %.2f m/s, %.0f mm from the body; feet slip to %.0f mm/s'
               % (clip, times[-1], max(pairs), sum(n > 0 for n in pairs), len(pairs),
                  1000 * min(f[:, 1].min() for f in frames), hand_speed(rig, joints),
                  1000 * min(gap(f, triangles, arms, trunk) for f in frames[::5]),
@@ -95,8 +101,10 @@ def point_triangle(p, a, b, c):
     inside = all(np.cross(v - u, p - u) @ n >= 0 for u, v in ((a, b), (b, c), (c, a)))
     if inside:
         return abs((p - a) @ n)
-    return min(np.linalg.norm(p - u - np.clip((p - u) @ (v - u) / ((v - u) @ (v - u)), 0, 1) * (v - u))
-               for u, v in ((a, b), (b, c), (c, a)))
+    def to_edge(u, v):
+        d = v - u
+        return np.linalg.norm(p - u - np.clip((p - u) @ d / (d @ d), 0, 1) * d)
+    return min(to_edge(u, v) for u, v in ((a, b), (b, c), (c, a)))
 
 
 def hand_speed(rig, joints):

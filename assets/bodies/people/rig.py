@@ -1,7 +1,8 @@
 """Bones of a person and the weights with which they move the vertices.
 
-Weights are heat (Baran and Popovic 2007, "bone heat"): each vertex is warmed by the nearest bone that
-it sees through the body, and the heat spreads over the surface, which makes them smooth at joints.
+Weights are heat (Baran and Popovic 2007, "bone heat"): each vertex is warmed by the nearest bone
+that it sees through the body, and the heat spreads over the surface, which makes them smooth at
+joints.
 """
 import numpy as np
 

@@ -61,3 +61,17 @@ def write_sheets(person, body, clips, folder):
     write_png(os.path.join(folder, name + '_body.png'), body_sheet(person, *body[:2]))
     for clip in clips:
         write_png(os.path.join(folder, '%s_%s.png' % (name, clip)), clip_sheet(person, body, clip))
+
+
+def write_picture(person, body, folder):
+    """The small picture of the documentation: four views, and the face."""
+    os.makedirs(folder, exist_ok=True)
+    vertices, triangles, _ = body
+    h, j = person['height'], person['joints']
+    k = person['head'] * person['scale']
+    views = [draw(vertices, triangles, vec(0, h / 2, 0), h * 1.06, size, yaw, 4)
+             for yaw, size in ((0, (290, 340)), (40, (250, 340)), (90, (130, 340)),
+                               (180, (290, 340)))]
+    views.append(draw(vertices, triangles, j['head'] + vec(0, .05, 0) * k, .36 * k, (240, 340),
+                      35, 5))
+    write_png(os.path.join(folder, person['name'] + '.png'), row(views))
