@@ -147,7 +147,7 @@ KUNGFU_HIPS = [(.5, (0, 0, 0)), (1.6, (0, -.200, -.03)), (3.5, (0, -.200, -.03))
 # The balls of the feet: x, y, z, yaw, heel, toe (the foot against the toes while it is lifted).
 WIDE = (.17, 0, 0, 18, 0, 0)
 KNEE_UP = (-.02, .40, .24, 0, 14, 0)
-KICK = (-.03, .58, .64, 0, -42, -8)
+KICK = (-.03, .55, .64, 0, -42, -8)
 KUNGFU_LEFT = [(.4, (0,) * 6), (.9, WIDE), (4.0, WIDE), (4.55, KNEE_UP), (4.6, KNEE_UP),
                (5.0, KICK), (5.05, KICK), (5.45, KNEE_UP), (6.05, WIDE), (7.2, WIDE), (7.7, (0,) * 6)]
 KUNGFU_RIGHT = [(.9, (0,) * 6), (1.4, (-.17, 0, 0, -18, 0, 0)), (7.7, (-.17, 0, 0, -18, 0, 0)),
