@@ -223,7 +223,7 @@ void Commands::add_sew() {
 void Commands::add_pattern() {
   CLI::App* command = add_command("pattern", "panels and stitches of a sewing pattern",
                                   [this] { return run_pattern(pattern); });
-  command->add_option("FILE", pattern.file, "pattern of GarmentCode (.json)")->required();
+  command->add_option("FILE", pattern.file, "pattern of GarmentCode (.json) or DXF")->required();
   command->add_option("--svg", pattern.svg, "draw the panels with the numbers of their edges here");
 }
 

@@ -131,6 +131,11 @@ std::string Drawing::curve_to(const Panel& panel, const PanelEdge& edge, const O
   const auto place = [&](Vec2d p) { return fixed(page(p).x) + ' ' + fixed(page(p).y); };
   const std::string end = place(panel.corners[at(edge.end)]);
   if (edge.curve == EdgeCurve::straight) return "L " + end;
+  if (edge.curve == EdgeCurve::polyline) {
+    std::string line = "L ";
+    for (const Vec2d& p : edge.points) line += place(p) + ' ';
+    return line + end;
+  }
   if (edge.curve == EdgeCurve::quadratic) return "Q " + place(edge.control[0]) + ' ' + end;
   if (edge.curve == EdgeCurve::cubic)
     return "C " + place(edge.control[0]) + ' ' + place(edge.control[1]) + ' ' + end;

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMostDivisions = 12;  ///< rounds in which edges that are missing are divided
 constexpr double kDense = 0.8;      ///< mean of the outline's edges, below which a panel is finer
+constexpr double kDensest = 0.4;    ///< shortest edge length inside of such a panel
 constexpr std::size_t kMostNotes = 5;  ///< of one kind
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -37,6 +38,7 @@ class PatternMesher {
   PatternMesher(const Pattern& pattern, double edge_length) : edge_length_(edge_length) {
     meshed_.pattern = pattern;
     meshed_.edge_length = edge_length;
+    make_edges();
     check_size();
     divide_edges();
   }
@@ -72,10 +74,12 @@ class PatternMesher {
   void check_size() const;
   void divide_edges();
   void note_short_edges();
-  Index segments_for(const DividedEdge& edge, bool is_straight) const;
+  void make_edges();
+  double segments_of(Index p, Index e) const;
+  double segments_for(const DividedEdge& edge, bool is_straight) const;
   std::vector<GridPoint> loop_of(Index p) const;
   void check_ring(Index p, std::span<const GridPoint> ring) const;
-  double spacing_of(Index p, Index count) const;
+  double spacing_of(Index p, double segments) const;
   void mesh_panel(Index p, std::set<std::pair<Index, Index>>& gaps);
   void store(Index p, const OutlineMesh& mesh, Index ring);
   Segment segment_of(Index p, Index number) const;
@@ -87,15 +91,21 @@ class PatternMesher {
   std::vector<std::vector<DividedEdge>> edges_;  ///< of each panel
 };
 
-/// Refuses an edge length with which the mesh would be too large.
+/// Refuses an edge length with which the mesh would be too large. Segments are counted as numbers
+/// before memory is taken for them.
 void PatternMesher::check_size() const {
   if (!(edge_length_ >= 1e-4 && edge_length_ <= 1))
     throw InputError(meshed_.pattern.file + ": edge length " + number_text(edge_length_) +
                      " m, expected 0.0001 to 1 m");
   double triangles = 0;
-  for (const Panel& panel : meshed_.pattern.panels)
-    triangles += 2.31 * std::fabs(signed_area(panel)) / (edge_length_ * edge_length_) +
-                 2 * perimeter(panel) / edge_length_;
+  for (std::size_t p = 0; p < edges_.size(); ++p) {
+    double segments = 0;
+    for (std::size_t e = 0; e < edges_[p].size(); ++e)
+      segments += segments_of(static_cast<Index>(p), static_cast<Index>(e));
+    const double spacing = spacing_of(static_cast<Index>(p), segments);
+    triangles += 2.31 * std::fabs(signed_area(panel(static_cast<Index>(p)))) / (spacing * spacing) +
+                 segments;
+  }
   if (triangles > kMostPatternTriangles)
     throw InputError(meshed_.pattern.file + ": edge length " + number_text(edge_length_) +
                      " m would give about " + rounded_text(triangles) +
@@ -104,14 +114,15 @@ void PatternMesher::check_size() const {
 
 /// Segments of an edge by itself. An edge far below the edge length stays in one piece; others that
 /// are curved or sewn get a point between their ends at least.
-Index PatternMesher::segments_for(const DividedEdge& edge, bool is_straight) const {
+double PatternMesher::segments_for(const DividedEdge& edge, bool is_straight) const {
   const double count = edge.path.length() / edge_length_;
   if (count < 0.25) return 1;
-  const auto segments = static_cast<Index>(std::max(1.0, std::ceil(count - 1e-6)));
-  return edge.partner || !is_straight ? std::max<Index>(segments, 2) : segments;
+  const double segments = std::max(1.0, std::ceil(count - 1e-6));
+  return edge.partner || !is_straight ? std::max(segments, 2.0) : segments;
 }
 
-void PatternMesher::divide_edges() {
+/// The edges with their partners, not divided yet.
+void PatternMesher::make_edges() {
   for (const Panel& panel : meshed_.pattern.panels) {
     std::vector<DividedEdge> edges;
     for (const PanelEdge& edge : panel.edges)
@@ -124,21 +135,23 @@ void PatternMesher::divide_edges() {
       edge.partner = stitch.sides[1 - k];
       edge.reversed = !stitch.right_wrong;
     }
+}
 
-  // Both edges of a stitch get as many points as the longer one needs.
+/// Segments of an edge: both edges of a stitch get as many as the longer one needs.
+double PatternMesher::segments_of(Index p, Index e) const {
+  const DividedEdge& edge = edges_[at(p)][at(e)];
+  const double own = segments_for(edge, panel(p).edges[at(e)].curve == EdgeCurve::straight);
+  if (!edge.partner) return own;
+  const auto [other, number] = *edge.partner;
+  const bool is_straight = panel(other).edges[at(number)].curve == EdgeCurve::straight;
+  return std::max(own, segments_for(edges_[at(other)][at(number)], is_straight));
+}
+
+void PatternMesher::divide_edges() {
   for (std::size_t p = 0; p < edges_.size(); ++p)
     for (std::size_t e = 0; e < edges_[p].size(); ++e) {
-      DividedEdge& edge = edges_[p][e];
-      const auto is_straight = [&](Index panel, Index number) {
-        return this->panel(panel).edges[at(number)].curve == EdgeCurve::straight;
-      };
-      Index count = segments_for(edge, is_straight(static_cast<Index>(p), static_cast<Index>(e)));
-      if (edge.partner) {
-        const auto [panel, number] = *edge.partner;
-        count = std::max(count,
-                         segments_for(edges_[at(panel)][at(number)], is_straight(panel, number)));
-      }
-      for (Index i = 0; i <= count; ++i) edge.shares.push_back(static_cast<double>(i) / count);
+      const double count = segments_of(static_cast<Index>(p), static_cast<Index>(e));
+      for (double i = 0; i <= count; ++i) edges_[p][e].shares.push_back(i / count);
     }
   note_short_edges();
 }
@@ -180,11 +193,11 @@ void PatternMesher::check_ring(Index p, std::span<const GridPoint> ring) const {
 
 /// Edge length inside of a panel. A band that is sewn to a wider piece has more points on its
 /// outline than by its size, and gets shorter edges inside as well.
-double PatternMesher::spacing_of(Index p, Index count) const {
+double PatternMesher::spacing_of(Index p, double segments) const {
   double length = 0;
   for (const DividedEdge& edge : edges_[at(p)]) length += edge.path.length();
-  const double mean = length / count;
-  return mean < kDense * edge_length_ ? mean : edge_length_;
+  const double mean = length / segments;
+  return mean < kDense * edge_length_ ? std::max(mean, kDensest * edge_length_) : edge_length_;
 }
 
 void PatternMesher::mesh_panel(Index p, std::set<std::pair<Index, Index>>& gaps) {

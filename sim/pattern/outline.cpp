@@ -49,6 +49,11 @@ EdgePath::EdgePath(const Panel& panel, const PanelEdge& edge)
     return;
   }
 
+  if (curve_ == EdgeCurve::polyline) {
+    set_polyline(edge.points);
+    return;
+  }
+
   // The power form of Bézier curves is quick to evaluate and to differentiate.
   const auto [p, q] = edge.control;
   if (curve_ == EdgeCurve::quadratic)
@@ -63,6 +68,25 @@ EdgePath::EdgePath(const Panel& panel, const PanelEdge& edge)
     lengths_.push_back(lengths_.back() +
                        arc_length(static_cast<double>(k) / kParts, (k + 1.0) / kParts));
   length_ = lengths_.back();
+}
+
+void EdgePath::set_polyline(std::span<const Vec2d> points) {
+  polyline_.assign(1, start_);
+  polyline_.insert(polyline_.end(), points.begin(), points.end());
+  polyline_.push_back(end_);
+  lengths_.assign(1, 0.0);
+  for (std::size_t i = 1; i < polyline_.size(); ++i)
+    lengths_.push_back(lengths_.back() + norm_of(polyline_[i] - polyline_[i - 1]));
+  length_ = lengths_.back();
+}
+
+Vec2d EdgePath::at_of_polyline(double wanted) const {
+  const auto above = std::ranges::upper_bound(lengths_, wanted) - lengths_.begin();
+  const auto last = std::ssize(polyline_) - 2;
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, last));
+  const double length = lengths_[i + 1] - lengths_[i];
+  const double t = length > 0 ? (wanted - lengths_[i]) / length : 0;
+  return polyline_[i] + t * (polyline_[i + 1] - polyline_[i]);
 }
 
 void EdgePath::set_circle(double radius, bool large, bool counter_clockwise) {
@@ -103,6 +127,7 @@ Vec2d EdgePath::at(double share) const {
   if (share <= 0) return start_;
   if (share >= 1) return end_;
   if (curve_ == EdgeCurve::straight) return start_ + share * (end_ - start_);
+  if (curve_ == EdgeCurve::polyline) return at_of_polyline(share * length_);
   if (curve_ == EdgeCurve::circle) {
     const double angle = angle_ + share * turn_;
     return centre_ + radius_ * Vec2d{std::cos(angle), std::sin(angle)};
@@ -124,6 +149,13 @@ Vec2d EdgePath::at(double share) const {
 
 double EdgePath::swept_area() const {
   if (curve_ == EdgeCurve::straight) return 0.5 * cross_of(start_, end_);
+  if (curve_ == EdgeCurve::polyline) {
+    double sum = 0;
+    for (std::size_t i = 1; i < polyline_.size(); ++i)
+      sum += 0.5 * cross_of(polyline_[i - 1], polyline_[i]);
+    return sum;
+  }
+
   // An arc sweeps the triangle below its chord and the segment beyond it.
   if (curve_ == EdgeCurve::circle)
     return 0.5 * cross_of(start_, end_) + 0.5 * radius_ * radius_ * (turn_ - std::sin(turn_));
@@ -151,6 +183,11 @@ std::vector<Vec2d> outline_polygon(const Panel& panel, int segments) {
   for (const PanelEdge& edge : panel.edges) {
     const EdgePath path(panel, edge);
     const int count = edge.curve == EdgeCurve::straight ? 1 : segments;
+    if (edge.curve == EdgeCurve::polyline) {
+      points.push_back(corner(panel, edge.start));
+      points.insert(points.end(), edge.points.begin(), edge.points.end());
+      continue;
+    }
     for (int k = 0; k < count; ++k) points.push_back(path.at(static_cast<double>(k) / count));
   }
   return points;

@@ -1,6 +1,7 @@
 // The curves of panel edges: where they go, how long they are, and what they enclose.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/files/grid_point.h"
@@ -30,6 +31,8 @@ class EdgePath {
   Vec2d point(double u) const;
   double speed(double u) const;
   double arc_length(double from, double to) const;
+  void set_polyline(std::span<const Vec2d> points);
+  Vec2d at_of_polyline(double wanted) const;
   void set_circle(double radius, bool large, bool counter_clockwise);
 
   EdgeCurve curve_;
@@ -37,7 +40,8 @@ class EdgePath {
   Vec2d start_, end_;
   Vec2d centre_;                              ///< of a circle
   double radius_ = 0, angle_ = 0, turn_ = 0;  ///< of a circle: at the start, and to the end
-  std::vector<double> lengths_;               ///< up to each of equal parts of u
+  std::vector<Vec2d> polyline_;               ///< corners included
+  std::vector<double> lengths_;  ///< up to each of equal parts of u, or each point of a polyline
   double length_ = 0;
 };
 
@@ -45,7 +49,8 @@ class EdgePath {
 double signed_area(const Panel& panel);
 double perimeter(const Panel& panel);  ///< [m]
 
-/// The loop as a polygon: each curved edge becomes `segments` straight ones.
+/// The loop as a polygon: each curved edge becomes `segments` straight ones, and polylines keep
+/// their points.
 std::vector<Vec2d> outline_polygon(const Panel& panel, int segments);
 
 }  // namespace icloth

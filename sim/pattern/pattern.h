@@ -12,9 +12,10 @@ namespace icloth {
 
 /// Limits of a pattern file, checked before memory is taken.
 inline constexpr std::size_t kMostPanels = 1000;
-inline constexpr std::size_t kMostPanelEdges = 10'000;  ///< of all panels together
+inline constexpr std::size_t kMostPanelEdges = 10'000;      ///< of all panels together
+inline constexpr std::size_t kMostOutlinePoints = 200'000;  ///< of all polylines together
 
-enum class EdgeCurve { straight, quadratic, cubic, circle };
+enum class EdgeCurve { straight, quadratic, cubic, circle, polyline };
 
 /// One edge of a panel, from one corner to the next one of the loop.
 struct PanelEdge {
@@ -22,6 +23,7 @@ struct PanelEdge {
   EdgeCurve curve = EdgeCurve::straight;
   std::array<Vec2d, 2> control;    ///< control points in the plane of the panel [m]; quadratic: one
   double radius = 0;               ///< of a circle, at least half the chord [m]
+  std::vector<Vec2d> points;       ///< of a polyline, between the corners [m]
   bool large_arc = false;          ///< the larger one of the two arcs
   bool counter_clockwise = false;  ///< turn of the arc, which then bulges to the right of the edge
   std::string label;               ///< "collar", "lower_interface" …; empty: none
@@ -64,11 +66,15 @@ struct Pattern {
   std::vector<std::string> notes;  ///< what the user should know: one line each, with the file
 };
 
-/// Reads a pattern in the JSON of GarmentCode; docs/patterns.md says what is read. Throws
-/// InputError with file, panel, edge, value and what was expected.
+/// Reads a pattern: a DXF file by its extension (.dxf), all others in the JSON of GarmentCode;
+/// docs/patterns.md says what is read. Throws InputError with file, panel, edge, value and what was
+/// expected.
 Pattern read_pattern(const std::string& path);
 
-/// The same from memory. `name`: of the file, for messages.
+/// The JSON from memory. `name`: of the file, for messages.
 Pattern parse_pattern(std::string_view text, const std::string& name);
+
+/// The panels of a DXF file (AAMA/ASTM) from memory. It has no stitches and no placement.
+Pattern parse_pattern_dxf(std::string_view text, const std::string& name);
 
 }  // namespace icloth

@@ -322,6 +322,8 @@ Pattern parse_pattern(std::string_view text, const std::string& name) {
 }
 
 Pattern read_pattern(const std::string& path) {
+  if (lower_extension(path) == ".dxf")
+    return parse_pattern_dxf(read_file(path, kMaxBytes), shown_path(path));
   return parse_pattern(read_file(path, kMaxBytes), shown_path(path));
 }
 

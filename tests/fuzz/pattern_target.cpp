@@ -23,15 +23,20 @@ void require_valid(const SewnGarment& garment, std::size_t panels) {
   }
 }
 
+void sew_and_check(const Pattern& pattern) {
+  require(pattern_svg(pattern).ends_with("</svg>\n"), "a drawing");
+  const double shortest = edge_length_for(pattern, kMostTriangles);
+  require_valid(sew_pattern(pattern, std::max(kEdgeLength, shortest)), pattern.panels.size());
+}
+
 }  // namespace
 
 std::string read_pattern_json(std::string_view bytes) {
-  return refusal([&] {
-    const Pattern pattern = parse_pattern(bytes, "pattern.json");
-    require(pattern_svg(pattern).ends_with("</svg>\n"), "a drawing");
-    const double shortest = edge_length_for(pattern, kMostTriangles);
-    require_valid(sew_pattern(pattern, std::max(kEdgeLength, shortest)), pattern.panels.size());
-  });
+  return refusal([&] { sew_and_check(parse_pattern(bytes, "pattern.json")); });
+}
+
+std::string read_dxf(std::string_view bytes) {
+  return refusal([&] { sew_and_check(parse_pattern_dxf(bytes, "pattern.dxf")); });
 }
 
 }  // namespace icloth::fuzz

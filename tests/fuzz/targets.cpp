@@ -16,6 +16,7 @@ std::span<const Target> targets() {
       {"mdd", read_mdd},
       {"query", read_query},
       {"pattern", read_pattern_json},
+      {"dxf", read_dxf},
   };
   return kTargets;
 }

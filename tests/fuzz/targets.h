@@ -31,6 +31,7 @@ std::string read_material(std::string_view bytes);
 std::string read_recording(std::string_view bytes);
 std::string read_camera(std::string_view bytes);
 std::string read_pattern_json(std::string_view bytes);
+std::string read_dxf(std::string_view bytes);
 std::string read_query(std::string_view bytes);
 
 }  // namespace icloth::fuzz
