@@ -48,10 +48,10 @@ void check_outline(const Pattern& pattern, Panel& panel) {
   std::vector<GridPoint> ring;
   for (const Vec2d& p : outline_polygon(panel, kCurveSegments)) {
     const double reach = std::max(std::fabs(p.x), std::fabs(p.y));
-    if (!(reach <= kLargestCoordinate))
+    if (!(reach <= kLargestReach))
       throw InputError(panel_place(pattern, panel) + ": value " + rounded_text(reach) +
                        " m from the origin of the panel, expected at most " +
-                       number_text(kLargestCoordinate) + " m");
+                       number_text(kLargestReach) + " m");
     ring.push_back(to_grid(p));
   }
   if (crosses_itself(ring))

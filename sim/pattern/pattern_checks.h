@@ -12,7 +12,7 @@ inline constexpr double kSmallestPanel = 1e-4;
 
 /// Distance from the origin of a panel that no point of it exceeds [m]; differences then fit the
 /// grid.
-inline constexpr double kLargestCoordinate = 50;
+inline constexpr double kLargestReach = 50;
 
 /// Lengths of two stitched edges, the longer one over the shorter one, above this: a gather.
 inline constexpr double kGatherRatio = 1.03;

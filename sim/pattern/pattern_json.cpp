@@ -154,8 +154,8 @@ void PatternReader::read_corners(Panel& panel, JsonObject& object) {
   for (const JsonValue& value : limited_items(object.required("vertices"), kMostPanelEdges)) {
     panel.corners.push_back(metre * point_of(value));
     const Vec2d p = panel.corners.back();
-    if (std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestCoordinate)
-      value.refuse("coordinates of at most " + number_text(kLargestCoordinate) + " m, with " +
+    if (std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestReach)
+      value.refuse("coordinates of at most " + number_text(kLargestReach) + " m, with " +
                    number_text(units_.per_metre) + " units a metre");
   }
   if (!units_.centre_panels || panel.corners.empty()) return;
@@ -215,7 +215,7 @@ Vec2d PatternReader::control_point(const Panel& panel, const PanelEdge& edge,
     const Vec3d moved = panel.placement.translation;
     point = (1 / units_.per_metre) * c - Vec2d{moved.x, moved.y};
   }
-  if (std::max(std::fabs(point.x), std::fabs(point.y)) > 2 * kLargestCoordinate)
+  if (std::max(std::fabs(point.x), std::fabs(point.y)) > 2 * kLargestReach)
     value.refuse("a control point near the panel");
   return point;
 }
