@@ -97,6 +97,8 @@ void PatternMesher::check_size() const {
   if (!(edge_length_ >= 1e-4 && edge_length_ <= 1))
     throw InputError(meshed_.pattern.file + ": edge length " + number_text(edge_length_) +
                      " m, expected 0.0001 to 1 m");
+
+  // The area inside, and a triangle for every segment of the outline.
   double triangles = 0;
   for (std::size_t p = 0; p < edges_.size(); ++p) {
     double segments = 0;

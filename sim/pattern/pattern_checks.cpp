@@ -132,6 +132,7 @@ void note_collapsing_stitches(Pattern& pattern) {
 }
 
 void note_lengths(Pattern& pattern) {
+  // Each likely mistake is named by itself.
   std::size_t gathers = 0;
   double largest = 1;
   for (std::size_t s = 0; s < pattern.stitches.size(); ++s) {
@@ -145,6 +146,8 @@ void note_lengths(Pattern& pattern) {
     else if (ratio > kGatherRatio)
       ++gathers, largest = std::max(largest, ratio);
   }
+
+  // Gathers are common, and one line is enough for all of them.
   if (gathers > 0)
     pattern.notes.push_back(pattern.file + ": " + std::to_string(gathers) + " of " +
                             std::to_string(pattern.stitches.size()) +

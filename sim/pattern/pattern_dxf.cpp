@@ -94,6 +94,7 @@ class DxfPattern {
 
 /// Units are not reliable in these files: the size of the largest piece decides, except for inches.
 void DxfPattern::set_unit() {
+  // The largest extent of all outlines, in units of the file.
   double extent = 0;
   bool is_english = false;
   for (const DxfPiece& piece : pieces_) {
@@ -106,6 +107,8 @@ void DxfPattern::set_unit() {
       extent = std::max({extent, right->x - left->x, high->y - low->y});
     }
   }
+
+  // A garment has a piece of more than 30 cm, and hardly one of more than 3 m.
   metre_ = is_english ? 0.0254 : extent > kLargestExtentCm ? 0.001 : 0.01;
   note(std::string("its units are taken as ") +
        (is_english                  ? "inches"
@@ -117,6 +120,7 @@ void DxfPattern::set_unit() {
 /// The loop of a layer. It may be one polyline or several lines that meet end to end. Empty where
 /// there is none, or where it is not closed.
 Points DxfPattern::outline_of(const DxfPiece& piece, int layer) const {
+  // The parts in metres, without points that repeat the one before.
   std::vector<Points> parts;
   for (const DxfLine& line : piece.lines) {
     if (line.layer != layer || line.points.size() < 2 || parts.size() == kMostParts) continue;
@@ -159,6 +163,7 @@ std::optional<std::array<Vec2d, 2>> DxfPattern::line_of(const DxfPiece& piece, i
 /// Corners are the turn points of the file, or where it has none, points where the outline turns by
 /// more than 20°. A loop without corners gets two.
 std::vector<char> DxfPattern::corners_of(const DxfPiece& piece, const Points& points) const {
+  // Turn points are looked up by their first coordinate.
   const std::size_t n = points.size();
   std::vector<char> is_corner(n, 0);
   std::vector<std::pair<double, double>> turns;
@@ -268,6 +273,7 @@ void DxfPattern::read_piece(const DxfPiece& piece) {
 /// Divides an outline at its corners, counter-clockwise.
 void DxfPattern::add_panel(const Outline& outline, const std::string& name,
                            const std::string& place) {
+  // A loop that turns clockwise is reversed.
   Points points = outline.points;
   std::vector<char> is_corner = outline.is_corner;
   double area = 0;
