@@ -77,8 +77,20 @@ Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
   state_.candidate.resize(mesh_.cloth_vertices);
   state_.v.resize(mesh_.vertices);
   state_.v.fill(Vec3r{});
+  upload_skins();
   set_parameters(scene_->parameters);
   reserve_memory();
+}
+
+void Solver::upload_skins() {
+  skins_.resize(world_.objects.size());
+  for (std::size_t o = 0; o < skins_.size(); ++o) {
+    const WorldObject& object = world_.objects[o];
+    if (object.cloth) continue;
+    const Obstacle& obstacle = scene_->obstacles[static_cast<std::size_t>(object.source)];
+    if (obstacle.skinned() && obstacle.moves())
+      skins_[o] = std::make_unique<Skinning>(obstacle.skinned()->rig(), object.first_vertex);
+  }
 }
 
 /// Lists of pairs grow when cloth touches something, and no step should wait for their memory.
@@ -145,20 +157,29 @@ void Solver::begin_substep(double start, double dt) {
 
   // Obstacles that move are posed at the end of the substep. In between they move in straight
   // lines, as the cloth does.
-  std::vector<Vec3d> end;
-  std::vector<Vec3r> x1;
-  for (const WorldObject& object : world_.objects) {
+  for (std::size_t o = 0; o < world_.objects.size(); ++o) {
+    const WorldObject& object = world_.objects[o];
     if (object.cloth) continue;
     const Obstacle& obstacle = scene_->obstacles[static_cast<std::size_t>(object.source)];
     if (!obstacle.moves()) continue;
-    obstacle.pose(start + dt, end);
-    x1.clear();
-    for (const Vec3d& p : end) x1.push_back(to_real(p));
-    state_.x1.upload_range(object.first_vertex, x1);
+    if (skins_[o])
+      skins_[o]->place(obstacle.skin_pose(start + dt), state_.x1.view());
+    else
+      upload_pose(obstacle, start + dt, object.first_vertex);
     for_each("step.obstacle", object.vertex_count,
              ObstacleVelocity{state_.x0.view(), state_.x1.view(), state_.v.view(),
                               object.first_vertex, real(1 / dt)});
   }
+}
+
+/// Poses a body on the host, where no bones move it.
+void Solver::upload_pose(const Obstacle& obstacle, double time, Index first_vertex) {
+  std::vector<Vec3d> pose;
+  obstacle.pose(time, pose);
+  std::vector<Vec3r> x;
+  x.reserve(pose.size());
+  for (const Vec3d& p : pose) x.push_back(to_real(p));
+  state_.x1.upload_range(first_vertex, x);
 }
 
 void Solver::accept_substep(StepReport& report, double dt) {

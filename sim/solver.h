@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "sim/bodies/skinning.h"
 #include "sim/collision/broad_phase.h"
 #include "sim/collision/ccd.h"
 #include "sim/collision/impact_zones.h"
@@ -58,7 +59,9 @@ class Solver final : public Simulator {
   bool let_go_of_bodies(StepReport& report, double start, double dt);
 
   // sim/solver.cpp
+  void upload_skins();
   void begin_substep(double start, double dt);
+  void upload_pose(const Obstacle& obstacle, double time, Index first_vertex);
   void accept_substep(StepReport& report, double dt);
   double zone_work(double dt);
   void report_offending(StepReport& report) const;
@@ -102,6 +105,7 @@ class Solver final : public Simulator {
   Ccd ccd_;
   ImpactZones impact_zones_;
   Pinch pinch_{world_};
+  std::vector<std::unique_ptr<Skinning>> skins_;  ///< of the objects, null where no bones move it
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -1,11 +1,13 @@
-// The one file that includes assimp.
+// Reading with assimp. Only this file, body_rig.cpp and body_clips.cpp include it.
 #include "sim/files/body_assimp.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "sim/files/body_rig.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/text.h"
@@ -32,9 +34,25 @@ void collect_poses(const aiNode& node, const aiMatrix4x4& parent, NodePoses& pos
   for (unsigned i = 0; i < node.mNumChildren; ++i) collect_poses(*node.mChildren[i], pose, poses);
 }
 
+/// A vertex of a mesh with the weights that its morph targets have in the file.
+aiVector3D morphed_vertex(const aiMesh& mesh, unsigned v) {
+  aiVector3D p = mesh.mVertices[v];
+  for (unsigned k = 0; k < mesh.mNumAnimMeshes; ++k) {
+    const aiAnimMesh& target = *mesh.mAnimMeshes[k];
+    if (target.mWeight != 0 && target.mVertices && v < target.mNumVertices)
+      p += target.mWeight * (target.mVertices[v] - mesh.mVertices[v]);
+  }
+  return p;
+}
+
 /// Positions of a mesh under a node; a skin replaces the node's own transform.
 std::vector<Vec3d> posed_vertices(const aiMesh& mesh, const aiMatrix4x4& node_pose,
-                                  const NodePoses& poses) {
+                                  const NodePoses& poses, bool use_morph_weights) {
+  std::vector<aiVector3D> base;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+    base.push_back(use_morph_weights ? morphed_vertex(mesh, v) : mesh.mVertices[v]);
+
+  // The bones of each vertex take it to its place, as far as the file has their nodes.
   std::vector<aiVector3D> sum(mesh.mNumVertices);
   std::vector<float> weight(mesh.mNumVertices, 0.0f);
   for (unsigned b = 0; b < mesh.mNumBones; ++b) {
@@ -45,13 +63,13 @@ std::vector<Vec3d> posed_vertices(const aiMesh& mesh, const aiMatrix4x4& node_po
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& entry = bone.mWeights[w];
       if (entry.mVertexId >= mesh.mNumVertices) continue;
-      sum[entry.mVertexId] += entry.mWeight * (pose * mesh.mVertices[entry.mVertexId]);
+      sum[entry.mVertexId] += entry.mWeight * (pose * base[entry.mVertexId]);
       weight[entry.mVertexId] += entry.mWeight;
     }
   }
   std::vector<Vec3d> positions;
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const aiVector3D p = weight[v] > 0 ? sum[v] / weight[v] : node_pose * mesh.mVertices[v];
+    const aiVector3D p = weight[v] > 0 ? sum[v] / weight[v] : node_pose * base[v];
     positions.push_back({p.x, p.y, p.z});
   }
   return positions;
@@ -79,32 +97,44 @@ void add_mesh(const aiMesh& mesh, const std::vector<Vec3d>& positions, const std
   }
 }
 
-void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
-              const NodePoses& poses, const std::string& path, TriangleMesh& body) {
-  const aiMatrix4x4 pose = parent * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    add_mesh(mesh, posed_vertices(mesh, pose, poses),
-             shown_path(path) + ": mesh " + excerpt(mesh.mName.C_Str()), body);
+/// The meshes of a scene on their way to a body.
+struct MeshReader {
+  const aiScene& scene;
+  const std::string& path;
+  bool use_morph_weights;
+  NodePoses poses;
+  RigReader& rig;
+  TriangleMesh mesh = {};
+
+  void add(const aiNode& node, const aiMatrix4x4& parent) {
+    const aiMatrix4x4 pose = parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
+      add_mesh(part, posed_vertices(part, pose, poses, use_morph_weights),
+               shown_path(path) + ": mesh " + excerpt(part.mName.C_Str()), mesh);
+      if (scene.mNumAnimations > 0) rig.add(part, node);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], pose);
   }
-  for (unsigned i = 0; i < node.mNumChildren; ++i)
-    add_node(scene, *node.mChildren[i], pose, poses, path, body);
+};
+
+/// The first vertex at each place, all digits of which agree, stands for all there.
+std::vector<Index> merge_places(const std::vector<Vec3d>& positions) {
+  std::map<std::array<double, 3>, Index> first_at;
+  std::vector<Index> number;
+  for (const Vec3d p : positions) {
+    const auto next = static_cast<Index>(first_at.size());
+    number.push_back(first_at.try_emplace({p.x, p.y, p.z}, next).first->second);
+  }
+  return number;
 }
 
 /// Vertices are split where texture or normal jump: merged again, so that the surface has no
-/// cracks.
-void merge_coinciding(TriangleMesh& body) {
-  std::map<std::array<double, 3>, Index> first_at;
+/// cracks. `number`: of each vertex afterwards, ascending where new.
+void merge_coinciding(const std::vector<Index>& number, TriangleMesh& body) {
   std::vector<Vec3d> positions;
-  std::vector<Index> number;
-
-  // Vertices are merged where all digits agree, since split ones are copies of each other.
-  for (Vec3d p : body.positions) {
-    const auto [entry, is_new] =
-        first_at.try_emplace({p.x, p.y, p.z}, static_cast<Index>(positions.size()));
-    if (is_new) positions.push_back(p);
-    number.push_back(entry->second);
-  }
+  for (std::size_t v = 0; v < number.size(); ++v)
+    if (number[v] == static_cast<Index>(positions.size())) positions.push_back(body.positions[v]);
 
   // A face that loses a corner by that has no area.
   for (Triangle& face : body.faces)
@@ -139,17 +169,6 @@ class FilesOfFolder : public Assimp::DefaultIOSystem {
   std::string body_;
 };
 
-std::vector<BodyClip> clips_of(const aiScene& scene) {
-  std::vector<BodyClip> clips;
-  for (unsigned i = 0; i < scene.mNumAnimations; ++i) {
-    const aiAnimation& animation = *scene.mAnimations[i];
-    const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 0;
-    const double seconds = rate > 0 ? animation.mDuration / rate : 0;
-    clips.push_back({animation.mName.C_Str(), std::isfinite(seconds) ? seconds : 0});
-  }
-  return clips;
-}
-
 std::size_t morphs_of(const aiScene& scene) {
   std::size_t morphs = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) morphs += scene.mMeshes[m]->mNumAnimMeshes;
@@ -179,19 +198,23 @@ Body read_with_assimp(const std::string& path) {
     throw InputError(shown_path(path) + ": cannot be read as a body (" + excerpt(reason) + ")");
   }
 
-  // The nodes place the meshes, and the skins bend them.
-  NodePoses poses;
-  collect_poses(*scene->mRootNode, aiMatrix4x4(), poses);
-  Body body;
-  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), poses, path, body.mesh);
-  merge_coinciding(body.mesh);
+  // The nodes place the meshes, and the skins bend them. glTF alone says which weights its morph
+  // targets have.
+  const std::string extension = lower_extension(path);
+  const bool is_gltf = extension == ".glb" || extension == ".gltf";
+  RigReader rig(*scene, path, is_gltf);
+  MeshReader meshes{
+      .scene = *scene, .path = path, .use_morph_weights = is_gltf, .poses = {}, .rig = rig};
+  collect_poses(*scene->mRootNode, aiMatrix4x4(), meshes.poses);
+  meshes.add(*scene->mRootNode, aiMatrix4x4());
+
+  // Where nothing moves, vertices at one place stay there; else they have to move together.
+  const bool moves = scene->mNumAnimations > 0;
+  Body body{.mesh = std::move(meshes.mesh), .bones = bones_of(*scene), .morphs = morphs_of(*scene)};
+  merge_coinciding(moves ? rig.merge() : merge_places(body.mesh.positions), body.mesh);
+  if (moves) body.rig = rig.take(*scene);
   if (body.mesh.faces.empty())
     throw InputError(shown_path(path) + ": 0 triangles, expected at least one");
-
-  // Clips and bones are read for notes, since they are not played.
-  body.clips = clips_of(*scene);
-  body.bones = bones_of(*scene);
-  body.morphs = morphs_of(*scene);
   return body;
 }
 

@@ -3,28 +3,23 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "sim/bodies/rig.h"
 #include "sim/files/mesh.h"
 
 namespace icloth {
 
-/// A motion that a body file holds.
-struct BodyClip {
-  std::string name;     ///< as the file says, not yet fit for a message
-  double duration = 0;  ///< [s]; 0: the file does not say
-};
-
 struct Body {
-  TriangleMesh mesh;            ///< bind pose, in the order of the file
-  std::vector<BodyClip> clips;  ///< not played: the mesh is the bind pose
-  std::size_t bones = 0;        ///< bones that some vertex follows
-  std::size_t morphs = 0;       ///< shapes that meshes can be blended with; not applied
+  TriangleMesh mesh;       ///< bind pose, in the order of the file
+  Rig rig = {};            ///< what moves it; empty where the file holds no clips
+  std::size_t bones = 0;   ///< bones that some vertex follows
+  std::size_t morphs = 0;  ///< shapes that meshes can be blended with
 };
 
-/// Static pose of a body: OBJ and PLY by the own readers, everything else (glTF, FBX, Collada …) by
-/// assimp, all meshes merged, node transforms and bind skinning applied, coinciding vertices
-/// merged. Throws InputError, also for such a format in a program that was built without assimp.
+/// A body: OBJ and PLY by the own readers, everything else (glTF, FBX, Collada …) by assimp, all
+/// meshes merged, node transforms and bind skinning applied. Coinciding vertices are merged; where
+/// there are clips, only those that move together. Throws InputError, also for such a format in a
+/// program that was built without assimp.
 ///
 /// Files for assimp are read in a child process with limits on memory, time and stack, so that no
 /// file can take this program down (sim/files/body_process.h). The main function of a program that

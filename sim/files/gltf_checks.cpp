@@ -30,6 +30,8 @@ class GltfChecker {
     for (const JsonValue& view : items("bufferViews")) check_view(view);
     for (const JsonValue& accessor : items("accessors")) check_accessor(accessor);
     check_nodes();
+    for (const JsonValue& skin : items("skins")) check_skin(skin);
+    for (const JsonValue& animation : items("animations")) check_animation(animation);
   }
 
  private:
@@ -109,6 +111,7 @@ class GltfChecker {
   void check_accessor(const JsonValue& accessor) {
     const std::int64_t count =
         number(accessor, "count", 0, static_cast<std::int64_t>(kLargestCount));
+    elements_.push_back(count);
     const std::int64_t size = element_bytes(accessor);
     const auto view = member(accessor, "bufferView");
     if (!view) return;  // all zero, or filled by an extension
@@ -168,11 +171,64 @@ class GltfChecker {
     }
   }
 
+  std::size_t node_count() const {
+    const auto nodes = root_.json().find("nodes");
+    return nodes == root_.json().end() ? 0 : nodes->size();
+  }
+  /// A member that is the number of an element of an array of the root.
+  void check_reference(const JsonValue& value, const std::string& key, std::size_t count) const {
+    if (const auto found = member(value, key)) index(*found, count);
+  }
+  std::int64_t elements_of(const JsonValue& accessor) const {
+    return elements_[index(accessor, elements_.size())];
+  }
+
+  /// Every joint is a node, once, and has an inverse bind matrix where there are any.
+  void check_skin(const JsonValue& skin) const {
+    const auto joints = member(skin, "joints");
+    if (!joints) skin.refuse("a key 'joints'");
+    const std::size_t nodes = node_count();
+    std::vector<bool> is_joint(nodes, false);
+    std::int64_t count = 0;
+    for (const JsonValue& joint : joints->items()) {
+      const std::size_t node = index(joint, nodes);
+      if (is_joint[node]) joint.refuse("a node that is no joint yet");
+      is_joint[node] = true;
+      ++count;
+    }
+    check_reference(skin, "skeleton", nodes);
+    const auto matrices = member(skin, "inverseBindMatrices");
+    if (matrices && elements_of(*matrices) < count)
+      matrices->refuse("an accessor with a matrix for each of the " + std::to_string(count) +
+                       " joints");
+  }
+
+  /// Channels refer to samplers and nodes that are there, and samplers have a value for every time.
+  void check_animation(const JsonValue& animation) const {
+    const auto samplers = member(animation, "samplers"), channels = member(animation, "channels");
+    const std::vector<JsonValue> all = samplers ? samplers->items() : std::vector<JsonValue>{};
+    for (const JsonValue& sampler : all) {
+      const auto input = member(sampler, "input"), output = member(sampler, "output");
+      if (!input || !output) sampler.refuse("the keys 'input' and 'output'");
+      const std::int64_t values = elements_of(*output);
+      if (values < elements_of(*input))
+        output->refuse("an accessor with a value for each of the " +
+                       std::to_string(elements_of(*input)) + " times");
+    }
+    if (!channels) return;
+    for (const JsonValue& channel : channels->items()) {
+      check_reference(channel, "sampler", all.size());
+      if (const auto target = member(channel, "target"))
+        check_reference(*target, "node", node_count());
+    }
+  }
+
   JsonValue root_;
   std::uint64_t chunk_bytes_;
   const std::string& path_;
   std::vector<std::int64_t> buffers_;  ///< [bytes]
   std::vector<View> views_;
+  std::vector<std::int64_t> elements_;  ///< of the accessors
 };
 
 }  // namespace

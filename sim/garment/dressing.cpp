@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "kernels/index.h"
+#include "sim/bodies/cached_poses.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 #include "sim/garment/arrange.h"
@@ -43,11 +44,12 @@ struct DressingRoom {
 
 /// The body grows to its size within kGrowTime.
 void let_grow(Obstacle& body, double shrink) {
+  std::vector<std::vector<Vec3f>> frames;
   for (const std::vector<Vec3d>& positions : {shrunk(body.mesh, shrink), body.mesh.positions}) {
-    std::vector<Vec3f>& frame = body.frames.emplace_back();
+    std::vector<Vec3f>& frame = frames.emplace_back();
     for (Vec3d p : positions) frame.push_back(convert<float>(p));
   }
-  body.frame_rate = 1 / kGrowTime;
+  body.poses = std::make_shared<CachedPoses>(std::move(frames), 1 / kGrowTime);
 }
 
 /// The bodies as they stand at time 0, the cloths that are no garments, held where they are, the

@@ -1,59 +1,31 @@
 #include "sim/scene/scene.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "sim/scene/transforms.h"
 
 namespace icloth {
-namespace {
-
-/// Interval of sorted samples that holds `time`, and how far into it; clamped at both ends.
-struct Interval {
-  std::size_t first, second;
-  double fraction;
-};
-
-Interval find_interval(const std::vector<Keyframe>& keys, double time) {
-  const auto after = std::ranges::upper_bound(keys, time, {}, &Keyframe::time);
-  if (after == keys.begin()) return {0, 0, 0};
-  const auto second = static_cast<std::size_t>(after - keys.begin());
-  if (second == keys.size()) return {second - 1, second - 1, 0};
-  const double start = keys[second - 1].time, end = keys[second].time;
-  return {second - 1, second, (time - start) / (end - start)};
-}
-
-Interval find_frame(std::size_t count, double frame) {
-  const double last = static_cast<double>(count - 1);
-  const double clamped = std::clamp(frame, 0.0, last);
-  const auto first = static_cast<std::size_t>(clamped);
-  return {first, std::min(first + 1, count - 1), clamped - std::floor(clamped)};
-}
-
-}  // namespace
 
 void Obstacle::pose(double time, std::vector<Vec3d>& out) const {
-  // An animation gives the positions between two of its frames, on straight lines.
-  if (frames.empty()) {
-    out = mesh.positions;
-  } else {
-    const Interval at = find_frame(frames.size(), time * frame_rate);
-    const std::vector<Vec3f>&a = frames[at.first], &b = frames[at.second];
-    out.resize(a.size());
-    for (std::size_t v = 0; v < a.size(); ++v)
-      out[v] = (1 - at.fraction) * convert<double>(a[v]) + at.fraction * convert<double>(b[v]);
-  }
+  // Bones carry the vertices of a skinned body, with the same arithmetic as on a device.
+  if (const SkinnedPoses* body = skinned()) return skin_vertices(body->rig(), skin_pose(time), out);
 
-  // Keyframes then move the whole body rigidly. Rotation vectors are interpolated component by
-  // component, so turns beyond 360 degrees are kept.
+  // Keyframes move the whole body, whatever pose it has by itself.
+  if (poses)
+    poses->pose(time, out);
+  else
+    out = mesh.positions;
   if (motion.empty()) return;
-  const Interval at = find_interval(motion, time);
-  const Keyframe &a = motion[at.first], &b = motion[at.second];
-  const double s = at.fraction;
-  const Eigen::Matrix3d rotation =
-      angle_axis((1 - s) * a.rotation + s * b.rotation).toRotationMatrix();
-  const Vec3d translation = (1 - s) * a.translation + s * b.translation;
+  const Affine rigid = rigid_pose(motion, time);
+  const Eigen::Matrix3d rotation = linear_part(rigid);
+  const Vec3d translation{rigid.m[3], rigid.m[7], rigid.m[11]};
   for (Vec3d& p : out) p = from_eigen(rotation * to_eigen(p)) + translation;
+}
+
+SkinPose Obstacle::skin_pose(double time) const {
+  SkinPose pose = skinned()->skin_pose(time);
+  if (motion.empty()) return pose;
+  const Affine rigid = rigid_pose(motion, time);
+  for (Affine& bone : pose.bones) bone = rigid * bone;
+  return pose;
 }
 
 }  // namespace icloth

@@ -1,10 +1,14 @@
 // A scene as the user describes it: const while it is simulated. SI units, Y up.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/bodies/pose_source.h"
+#include "sim/bodies/rigid_motion.h"
+#include "sim/bodies/skinned_poses.h"
 #include "sim/files/mesh.h"
 #include "sim/scene/garment.h"
 #include "sim/scene/material.h"
@@ -27,25 +31,21 @@ struct Cloth {
   std::optional<double> friction;
 };
 
-/// Rigid pose at a time; between keyframes translation and rotation vector are interpolated.
-struct Keyframe {
-  double time = 0;    ///< [s]
-  Vec3d translation;  ///< [m]
-  Vec3d rotation;     ///< axis × angle [rad], about the obstacle's own origin
-};
-
 struct Obstacle {
   std::string name;
-  TriangleMesh mesh;                       ///< pose at rest
-  std::vector<Keyframe> motion;            ///< sorted by time; empty: static
-  std::vector<std::vector<Vec3f>> frames;  ///< point cache, (frames)(V) [m]; empty: none
-  double frame_rate = 25;                  ///< of the point cache [1/s]
+  TriangleMesh mesh;                        ///< pose at rest
+  std::shared_ptr<const PoseSource> poses;  ///< clip or point cache; null: the mesh at all times
+  std::vector<Keyframe> motion;             ///< of the whole body, sorted by time; empty: none
   /// Coulomb coefficient of cloth on it, in place of the parameter proximity.friction_obstacle.
   std::optional<double> friction;
 
-  bool moves() const { return motion.size() > 1 || frames.size() > 1; }
+  bool moves() const { return motion.size() > 1 || (poses && poses->moves()); }
   /// Vertex positions at a time [s]; written to out (V).
   void pose(double time, std::vector<Vec3d>& out) const;
+  /// The body as bones move it, null where they do not.
+  const SkinnedPoses* skinned() const { return poses ? poses->skinned() : nullptr; }
+  /// Of a skinned body: the bones at a time [s], keyframes included.
+  SkinPose skin_pose(double time) const;
 };
 
 struct PathPoint {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "sim/bodies/cached_poses.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_meshes.h"
 #include "sim/simulator.h"
@@ -145,16 +146,17 @@ TEST_P(Pinch, PartsOfOneBodyThatOverlap) {
   both.positions.insert(both.positions.end(), two[1].mesh.positions.begin(),
                         two[1].mesh.positions.end());
   Obstacle body = make_obstacle(both, {});
-  body.frame_rate = 100;
+  std::vector<std::vector<Vec3f>> frames;
   for (int k = 0; k <= 40; ++k) {
     const double close = 1 - std::fabs(k / 20.0 - 1);  // 0 to 1 to 0
-    body.frames.emplace_back();
+    frames.emplace_back();
     for (std::size_t i = 0; i < both.positions.size(); ++i) {
       const double side = static_cast<Index>(i) < first ? 1 : -1;
-      body.frames.back().push_back(
+      frames.back().push_back(
           convert<float>(both.positions[i] + Vec3d{0, 0, side * 0.0215 * close}));
     }
   }
+  body.poses = std::make_shared<CachedPoses>(std::move(frames), 100);
   scene->obstacles = {body};
   expect_pinched_for_a_while(scene, GetParam());
 }

@@ -94,7 +94,7 @@ TEST(BodyIo, ReadsGoodFilesOfSeveralFormatsInTheChild) {
   const std::string beside = R"({"byteLength":36,"uri":"a.bin"})";
   const Body body = read_body(folder.write("a.gltf", triangle_gltf(beside)));
   EXPECT_EQ(body.mesh.positions, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  EXPECT_TRUE(body.clips.empty());
+  EXPECT_TRUE(body.rig.empty());
   EXPECT_EQ(body.bones, 0u);
   EXPECT_EQ(read_body(folder.write("a.stl", stl(1, 1))).mesh.faces.size(), 1u);
 }
@@ -116,12 +116,12 @@ TEST(BodyIo, NamesTheClipsOfAFile) {
       R"("animations":[{"name":"walk","samplers":[{"input":1,"output":2}],)"
       R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]})";
   const Body body = read_body(folder.write("walk.glb", glb(json, data)));
-  ASSERT_EQ(body.clips.size(), 1u);
-  EXPECT_EQ(body.clips[0].name, "walk");
-  EXPECT_NEAR(body.clips[0].duration, 2, 1e-6);
+  ASSERT_EQ(body.rig.clips.size(), 1u);
+  EXPECT_EQ(body.rig.clips[0].name, "walk");
+  EXPECT_NEAR(body.rig.clips[0].duration, 2, 1e-6);
 }
 
-TEST(BodyIo, CountsMorphTargetsWhichAreNotApplied) {
+TEST(BodyIo, CountsMorphTargets) {
   const TemporaryFolder folder;
   std::string json = triangle_gltf(R"({"byteLength":36})");
   const std::string plain = R"({"attributes":{"POSITION":0}})";

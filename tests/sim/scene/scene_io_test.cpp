@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/bodies/cached_poses.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/world.h"
@@ -235,13 +236,13 @@ TEST(SceneIo, BodiesFollowMddPointCachesAtTheirRate) {
   const auto scene = load(folder.write("a.json", start + "}]}"));
   const Obstacle& body = scene->obstacles.at(0);
   EXPECT_TRUE(body.moves());
-  EXPECT_EQ(body.frame_rate, 4);
+  EXPECT_EQ(dynamic_cast<const CachedPoses&>(*body.poses).frame_rate(), 4);
   std::vector<Vec3d> out;
   body.pose(0.125, out);
   ASSERT_EQ(out.size(), 3u);
   EXPECT_EQ(out[1], (Vec3d{3, 0, 0}));
   const auto slower = load(folder.write("b.json", start + R"(, "frame_rate": 2}]})"));
-  EXPECT_EQ(slower->obstacles.at(0).frame_rate, 2);
+  EXPECT_EQ(dynamic_cast<const CachedPoses&>(*slower->obstacles.at(0).poses).frame_rate(), 2);
 }
 
 TEST(SceneIo, ObjectsMayHaveTheirOwnFriction) {
@@ -265,8 +266,8 @@ TEST(SceneIo, ObjectsMayHaveTheirOwnFriction) {
 TEST(SceneIo, PointCacheIsInterpolated) {
   Obstacle obstacle;
   obstacle.mesh.positions = {{7, 7, 7}};
-  obstacle.frames = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 2, 0}}};
-  obstacle.frame_rate = 10;
+  const std::vector<std::vector<Vec3f>> frames = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 2, 0}}};
+  obstacle.poses = std::make_shared<CachedPoses>(frames, 10);
   EXPECT_TRUE(obstacle.moves());
   std::vector<Vec3d> out;
   obstacle.pose(0.125, out);
