@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <numeric>
+#include <optional>
 #include <span>
 
 #include "kernels/index.h"
+#include "sim/files/box.h"
 #include "sim/files/text.h"
 #include "sim/scene/intersections.h"
 
@@ -13,11 +17,14 @@ namespace icloth {
 namespace {
 
 // What is tried for a panel: radii of bending round the body, nearest to flat first, and ways to
-// stand further away from it.
-constexpr double kRadii[] = {0, 0.4, 0.25, 0.18, 0.12, 0.08};  // [m]; 0: flat
-constexpr double kDistances[] = {0, 0.02, 0.04, 0.06, 0.08};   // [m]
-constexpr double kDepths[] = {0.01, 0.02, 0.03, 0.04};         // of thinner bodies [m]
-constexpr int kMostChecks = 150;
+// stand further away from it and higher.
+constexpr double kRadii[] = {0, 0.4, 0.25, 0.18, 0.12, 0.08};                 // [m]; 0: flat
+constexpr double kDistances[] = {0, 0.02, 0.04, 0.06, 0.08, 0.12, 0.16};      // [m]
+constexpr double kLifts[] = {0, 0.02, 0.04, 0.06, 0.08, 0.12, -0.02, -0.04};  // [m]
+constexpr double kTilts[] = {0, 15, 30, 45, 60};  // of sleeves and legs downwards [degrees]
+constexpr double kDepths[] = {0, 0.01, 0.02, 0.03, 0.04};  // of thinner bodies [m]
+constexpr int kMostChecks = 600;
+constexpr double kRadians = std::numbers::pi / 180;  // of a degree
 
 /// All that a garment may go through at its start: bodies, and garments that are on already.
 struct Surroundings {
@@ -87,6 +94,7 @@ class Trial {
     std::vector<IntersectingFaces> found = find_intersections(x, faces, group);
     const auto own = static_cast<Index>(cloth_.mesh.faces.size());
     std::erase_if(found, [&](const IntersectingFaces& pair) { return pair.a >= own; });
+    last_count_ = found.size();
     return found;
   }
 
@@ -121,6 +129,7 @@ class Trial {
   }
 
   int checks() const { return checks_; }
+  std::size_t last_count() const { return last_count_; }
   Garment& garment() { return garment_; }
   Cloth& cloth() { return cloth_; }
 
@@ -134,6 +143,7 @@ class Trial {
   Garment garment_;
   Cloth cloth_;
   Surroundings around_;
+  std::size_t last_count_ = 0;
   int checks_ = 0;
 };
 
@@ -148,64 +158,209 @@ Vec3d outside_of(const Panel& panel) {
   return panel.clockwise ? -1.0 * normal : normal;
 }
 
-/// Placements of one panel that are tried, those nearest to the pattern's own first.
-std::vector<PanelPlacement> choices_for(const Panel& panel) {
-  std::vector<PanelPlacement> choices;
-  const Vec3d outside = outside_of(panel);
-  for (double distance : kDistances)
-    for (int r = -1; r < static_cast<int>(std::size(kRadii)); ++r) {
-      PanelPlacement choice = panel.placement;
-      choice.translation += distance * outside;
-      if (r >= 0) choice.bend_radius = (panel.clockwise ? -1 : 1) * kRadii[r];
-      choices.push_back(choice);
-    }
-  return choices;
+/// How a panel stands against its place in the pattern.
+struct Stand {
+  double distance = 0, lift = 0;  ///< [m]
+  double tilt = 0;                ///< of a sleeve or leg, its outer end downwards [degrees]
+  std::optional<double> radius;   ///< of bending [m], 0: flat; none: the pattern's own
+  bool operator==(const Stand&) const = default;
+};
+
+/// Turns a panel beside the middle plane about the end of it that is nearer to that plane.
+void tilt(const Panel& panel, double degrees, PanelPlacement& place) {
+  const Box box = box_around(place_points(panel.corners, place));
+  const bool left = box.low.x + box.high.x > 0;
+  const Vec3d pivot{left ? box.low.x : box.high.x, 0.5 * (box.low.y + box.high.y), 0};
+  const double turn = left ? -degrees : degrees;
+  const double c = std::cos(turn * kRadians), s = std::sin(turn * kRadians);
+  const Vec3d t = place.translation - pivot;
+  place.translation = pivot + Vec3d{c * t.x - s * t.y, s * t.x + c * t.y, t.z};
+  place.rotation.z += turn;  // the last of the turns about the axes
 }
 
-/// Bends and moves panel after panel, those in most pairs first, and keeps what leaves fewer pairs.
-std::vector<IntersectingFaces> move_panels(Trial& trial, std::vector<PanelPlacement>& best,
-                                           std::vector<IntersectingFaces> left) {
-  const std::vector<Panel>& panels = trial.garment().meshed->pattern.panels;
-  bool better = true;
-  while (better && !left.empty() && trial.checks() < kMostChecks) {
-    better = false;
-    const std::vector<std::size_t> count = trial.by_panel(left);
-    std::vector<std::size_t> order;
-    for (std::size_t p = 0; p < panels.size(); ++p)
-      if (count[p] > 0) order.push_back(p);
-    std::ranges::stable_sort(order, std::ranges::greater{},
-                             [&](std::size_t p) { return count[p]; });
+PanelPlacement placed(const Panel& panel, const Stand& stand) {
+  PanelPlacement place = panel.placement;
+  if (stand.tilt > 0) tilt(panel, stand.tilt, place);
+  place.translation += stand.distance * outside_of(panel) + Vec3d{0, stand.lift, 0};
+  if (stand.radius) place.bend_radius = (panel.clockwise ? -1 : 1) * *stand.radius;
+  return place;
+}
 
-    for (std::size_t p : order)
-      for (const PanelPlacement& choice : choices_for(panels[p])) {
-        if (left.empty() || trial.checks() >= kMostChecks) break;
-        std::vector<PanelPlacement> placements = best;
-        placements[p] = choice;
-        std::vector<IntersectingFaces> pairs = trial.pairs(placements);
-        if (pairs.size() >= left.size()) continue;
-        left = std::move(pairs);
-        best = std::move(placements);
-        better = true;
-      }
+/// Panels that move together: one panel, a panel and its mirror image, those of the trunk, or all.
+struct PanelGroup {
+  std::vector<std::size_t> panels;
+  bool limb = false;  ///< beside the middle plane: it may be tilted
+};
+
+/// Each panel with the one that stands where its mirror image does, left and right exchanged, and
+/// the panels of the trunk and of the limbs.
+std::vector<PanelGroup> panel_groups(const Pattern& pattern) {
+  constexpr double kTolerance = 0.005;  // [m]
+  std::vector<Box> boxes;
+  for (const Panel& panel : pattern.panels)
+    boxes.push_back(box_around(place_points(panel.corners, panel.placement)));
+  const auto is_mirror = [&](const Box& a, const Box& b) {
+    const Vec3d low{-b.high.x, b.low.y, b.low.z}, high{-b.low.x, b.high.y, b.high.z};
+    return norm(a.low - low) < kTolerance && norm(a.high - high) < kTolerance;
+  };
+
+  const auto is_limb = [&](std::size_t p) {
+    return boxes[p].low.x > kTolerance || boxes[p].high.x < -kTolerance;
+  };
+
+  std::vector<PanelGroup> groups;
+  std::vector<bool> taken(boxes.size());
+  for (std::size_t p = 0; p < boxes.size(); ++p) {
+    if (taken[p]) continue;
+    PanelGroup group{{p}, is_limb(p)};
+    for (std::size_t q = p + 1; q < boxes.size() && group.panels.size() == 1; ++q)
+      if (!taken[q] && is_mirror(boxes[p], boxes[q])) group.panels.push_back(q);
+    for (std::size_t q : group.panels) taken[q] = true;
+    groups.push_back(std::move(group));
   }
-  return left;
+
+  // What goes round the trunk moves together as well, and so do the sleeves or legs beside it.
+  PanelGroup trunk, limbs;
+  limbs.limb = true;
+  for (std::size_t p = 0; p < boxes.size(); ++p) (is_limb(p) ? limbs : trunk).panels.push_back(p);
+  for (PanelGroup* group : {&trunk, &limbs})
+    if (group->panels.size() > 1 && group->panels.size() < boxes.size())
+      groups.push_back(std::move(*group));
+  return groups;
 }
 
-std::vector<std::string> moved_panels(const Pattern& pattern,
-                                      std::span<const PanelPlacement> placements) {
-  std::vector<std::string> moved;
-  for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
-    const PanelPlacement& own = pattern.panels[p].placement;
-    const double distance = norm(placements[p].translation - own.translation);
-    const bool is_bent = placements[p].bend_radius != own.bend_radius;
-    if (distance == 0 && !is_bent) continue;
-    std::string clause = "panel " + in_quotes(pattern.panels[p].name);
-    if (distance > 0) clause += " stands " + rounded_text(100 * distance) + " cm further out";
-    if (is_bent) {
-      const double radius = std::fabs(placements[p].bend_radius);
-      clause += distance > 0 ? " and" : "";
-      clause += radius == 0 ? " is flat" : " is bent to " + rounded_text(100 * radius) + " cm";
+/// Searches for stands of all panels with as few intersecting pairs as possible.
+class StandSearch {
+ public:
+  StandSearch(Trial& trial, std::vector<Stand>& stands, int most_checks)
+      : trial_(trial),
+        panels_(trial.garment().meshed->pattern.panels),
+        stands_(stands),
+        most_checks_(most_checks) {
+    left_ = trial_.pairs(placements(stands_));
+  }
+
+  /// Moves all panels at once, then group after group, those in most pairs first, one quantity at a
+  /// time, and keeps what leaves fewer pairs, until nothing does.
+  const std::vector<IntersectingFaces>& run() {
+    PanelGroup all{std::vector<std::size_t>(panels_.size()), false};
+    std::iota(all.panels.begin(), all.panels.end(), std::size_t{0});
+    const std::vector<PanelGroup> groups = panel_groups(trial_.garment().meshed->pattern);
+    try_all_together(all);
+    for (std::size_t before = left_.size() + 1; before > left_.size() && !left_.empty();) {
+      before = left_.size();
+      for (const PanelGroup& group : by_pairs(groups)) try_moves(group);
     }
+    return left_;
+  }
+
+  std::vector<PanelPlacement> placements(const std::vector<Stand>& stands) const {
+    std::vector<PanelPlacement> result;
+    for (std::size_t p = 0; p < panels_.size(); ++p)
+      result.push_back(placed(panels_[p], stands[p]));
+    return result;
+  }
+
+ private:
+  std::vector<PanelGroup> by_pairs(std::vector<PanelGroup> groups) const {
+    const std::vector<std::size_t> count = trial_.by_panel(left_);
+    const auto pairs_of = [&](const PanelGroup& group) {
+      std::size_t sum = 0;
+      for (std::size_t p : group.panels) sum += count[p];
+      return sum;
+    };
+    std::erase_if(groups, [&](const PanelGroup& group) { return pairs_of(group) == 0; });
+    std::ranges::stable_sort(groups, std::ranges::greater{}, pairs_of);
+    return groups;
+  }
+
+  /// Lifts and spreads the garment as a whole: a better place for it may lie beyond worse ones.
+  void try_all_together(const PanelGroup& all) {
+    const std::vector<Stand> before = stands_;
+    for (double lift : kLifts)
+      for (double distance : kDistances)
+        try_change(before, all, [&](Stand& s) {
+          s.lift = lift;
+          s.distance = distance;
+        });
+  }
+
+  /// Takes the best one of the moves of a group, if it leaves fewer pairs.
+  void try_moves(const PanelGroup& group) {
+    const std::vector<Stand> before = stands_;
+    for (double lift : kLifts) try_change(before, group, [&](Stand& s) { s.lift = lift; });
+    for (double distance : kDistances)
+      try_change(before, group, [&](Stand& s) { s.distance = distance; });
+    if (group.limb)
+      for (double tilt : kTilts) try_change(before, group, [&](Stand& s) { s.tilt = tilt; });
+    for (double radius : kRadii) try_change(before, group, [&](Stand& s) { s.radius = radius; });
+    try_change(before, group, [](Stand& s) { s.radius.reset(); });
+  }
+
+  template <class Change>
+  void try_change(const std::vector<Stand>& before, const PanelGroup& group, const Change& change) {
+    std::vector<Stand> stands = before;
+    for (std::size_t p : group.panels) change(stands[p]);
+    if (left_.empty() || stands == before || checks_ >= most_checks_) return;
+    ++checks_;
+    std::vector<IntersectingFaces> pairs = trial_.pairs(placements(stands));
+    if (pairs.size() >= left_.size()) return;
+    left_ = std::move(pairs);
+    stands_ = std::move(stands);
+  }
+
+  Trial& trial_;
+  const std::vector<Panel>& panels_;
+  std::vector<Stand>& stands_;
+  std::vector<IntersectingFaces> left_;
+  int most_checks_, checks_ = 0;
+};
+
+/// Patterns of one family are placed round a body whose origin is at its waist instead of between
+/// its feet: such a garment reaches far below the ground that the wearer stands on. It is raised by
+/// the height of that origin, and by how much is returned [m].
+double lift_to_body(Scene& scene, std::size_t number) {
+  constexpr double kBelowFeet = 0.05;     // [m]
+  constexpr double kOriginHeight = 0.69;  // of the average woman's body, over her height
+  Garment& garment = scene.garments[number];
+  Cloth& cloth = scene.cloths[at(garment.cloth)];
+
+  // The wearer is the obstacle that the scene names, or the tallest one.
+  Box wearer;
+  std::vector<Vec3d> pose;
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (!garment.body.empty() && obstacle.name != garment.body) continue;
+    obstacle.pose(0, pose);
+    const Box box = box_around(pose);
+    if (wearer.empty() || box.size().y > wearer.size().y) wearer = box;
+  }
+  const Box cover = box_around(cloth.mesh.positions);
+  if (wearer.empty() || cover.low.y > wearer.low.y - kBelowFeet) return 0;
+
+  const double height = kOriginHeight * wearer.size().y;
+  garment.translation.y += height;
+  sew_garment(garment, cloth);
+  return height;
+}
+
+/// "panel 'front' stands 4 cm further out, 2 cm higher and is flat", for each that moved.
+std::vector<std::string> moved_panels(const Pattern& pattern, std::span<const Stand> stands) {
+  std::vector<std::string> moved;
+  for (std::size_t p = 0; p < stands.size(); ++p) {
+    const Stand& stand = stands[p];
+    std::vector<std::string> parts;
+    if (stand.distance > 0) parts.push_back(rounded_text(100 * stand.distance) + " cm further out");
+    if (stand.lift != 0)
+      parts.push_back(rounded_text(100 * std::fabs(stand.lift)) + " cm " +
+                      (stand.lift > 0 ? "higher" : "lower"));
+    if (stand.tilt > 0) parts.push_back("tilted by " + rounded_text(stand.tilt) + "°");
+    if (stand.radius)
+      parts.push_back(*stand.radius == 0 ? "flat"
+                                         : "bent to " + rounded_text(100 * *stand.radius) + " cm");
+    if (parts.empty()) continue;
+    std::string clause = "panel " + in_quotes(pattern.panels[p].name) + " is ";
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      clause += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
     moved.push_back(clause);
   }
   return moved;
@@ -228,34 +383,34 @@ std::vector<Vec3d> shrunk(const TriangleMesh& mesh, double depth) {
 
 Arrangement arrange_garment(Scene& scene, std::size_t number, std::span<const std::size_t> on) {
   Garment& garment = scene.garments[number];
-  Trial trial(scene, number, surroundings_of(scene, on, 0));
-  std::vector<PanelPlacement> placements = garment.placements;
-  std::vector<IntersectingFaces> left = trial.pairs(placements);
-
+  const Pattern& pattern = garment.meshed->pattern;
   Arrangement result;
-  result.pairs_before = left.size();
-  if (!left.empty()) left = move_panels(trial, placements, std::move(left));
-  result.pairs_moved = left.size();
-  trial.pairs(placements);
-  result.left = trial.clauses(left);
-  result.checks = trial.checks();
+  result.raised = lift_to_body(scene, number);
+  std::vector<Stand> best(pattern.panels.size());
 
   // What still goes through the body may start outside a thinner one, which then grows back.
   for (double depth : kDepths) {
+    Trial trial(scene, number, surroundings_of(scene, on, depth));
+    std::vector<Stand> stands = best;
+    StandSearch search(trial, stands, kMostChecks);
+    if (depth == 0) result.pairs_before = trial.last_count();
+    const std::vector<IntersectingFaces> left = search.run();
+    result.checks += trial.checks();
+    if (depth == 0) result.pairs_moved = left.size();
+    if (depth == 0 || left.size() < result.pairs_left) {
+      best = stands;
+      result.pairs_left = left.size();
+      result.shrink = depth;
+      trial.pairs(search.placements(best));
+      result.left = trial.clauses(left);
+    }
     if (left.empty()) break;
-    Trial thinner(scene, number, surroundings_of(scene, on, depth));
-    const std::vector<IntersectingFaces> pairs = thinner.pairs(placements);
-    ++result.checks;
-    if (pairs.size() >= left.size()) continue;
-    left = pairs;
-    result.shrink = depth;
-    result.left = thinner.clauses(left);
   }
-  result.pairs_left = left.size();
 
-  garment.placements = placements;
+  for (std::size_t p = 0; p < best.size(); ++p)
+    garment.placements[p] = placed(pattern.panels[p], best[p]);
   sew_garment(garment, scene.cloths[at(garment.cloth)]);
-  result.moved = moved_panels(garment.meshed->pattern, placements);
+  result.moved = moved_panels(pattern, best);
   return result;
 }
 

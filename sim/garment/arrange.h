@@ -12,6 +12,7 @@ namespace icloth {
 
 /// What was tried for a garment.
 struct Arrangement {
+  double raised = 0;  ///< of the whole garment, where the pattern's origin is at the waist [m]
   std::size_t pairs_before = 0;    ///< of intersecting faces, as the pattern places the panels
   std::size_t pairs_moved = 0;     ///< after panels were bent and moved
   std::size_t pairs_left = 0;      ///< after the body was made thinner, too

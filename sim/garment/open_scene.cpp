@@ -23,8 +23,11 @@ std::string joined(const std::vector<std::string>& items) {
 /// What users should know about how the garment starts.
 void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
                       std::vector<std::string>& notes) {
+  if (arrangement.raised > 0)
+    notes.push_back(cloth + " is raised by " + rounded_text(arrangement.raised) +
+                    " m: its pattern, which reaches below the feet, has its origin at the waist");
   if (!arrangement.moved.empty())
-    notes.push_back(cloth + ": " + joined(arrangement.moved) + " than in the pattern, where " +
+    notes.push_back(cloth + ": " + joined(arrangement.moved) + "; as the pattern has them, " +
                     std::to_string(arrangement.pairs_before) + " pairs of faces intersect");
   if (arrangement.shrink > 0 && arrangement.pairs_left == 0)
     notes.push_back(cloth + ": bodies start " + rounded_text(1000 * arrangement.shrink) +
