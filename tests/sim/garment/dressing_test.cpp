@@ -1,0 +1,182 @@
+// Garments from patterns: where their panels start, how they are put on, and the cache of drapes.
+#include "sim/garment/dressing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "kernels/index.h"
+#include "sim/files/error.h"
+#include "sim/garment/drape_cache.h"
+#include "sim/garment/open_scene.h"
+#include "sim/scene/intersections.h"
+#include "sim/scene/material_io.h"
+#include "sim/scene/shapes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace icloth {
+namespace {
+
+/// Two rectangles of `width` cm, front and back, that are sewn along their sides to a tube.
+std::string tube_pattern(double width, double distance) {
+  const auto panel = [&](const char* name, double z, double turn) {
+    const std::string w = std::to_string(width / 2);
+    return "\"" + std::string(name) + R"(": {"vertices": [[-)" + w + ", 0], [" + w + ", 0], [" + w +
+           ", 20], [-" + w +
+           R"(, 20]], "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]},
+           {"endpoints": [2, 3], "label": "collar"}, {"endpoints": [3, 0]}],
+           "translation": [0, 20, )" +
+           std::to_string(z) + R"(], "rotation": [0, )" + std::to_string(turn) + ", 0]}";
+  };
+  return R"({"pattern": {"panels": {)" + panel("front", distance, 0) + ", " +
+         panel("back", -distance, 180) + R"(}, "stitches": [
+    [{"panel": "front", "edge": 1}, {"panel": "back", "edge": 3}],
+    [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 1}]]},
+    "properties": {"units_in_meter": 100}})";
+}
+
+/// A tube of cloth round a post of 10 cm radius.
+Scene tube_scene(const TemporaryFolder& folder, double width, double distance) {
+  std::vector<std::string> notes;
+  Scene scene;
+  scene.name = "tube";
+  Cloth cloth;
+  cloth.name = "tube";
+  cloth.material = load_material("default", "");
+  Garment garment = read_garment(
+      folder.write("tube_specification.json", tube_pattern(width, distance)), 600, notes);
+  sew_garment(garment, cloth);
+  scene.cloths.push_back(std::move(cloth));
+  scene.garments.push_back(std::move(garment));
+
+  Obstacle post;
+  post.name = "post";
+  post.mesh = make_capsule(0.1, 0.6, 600);
+  for (Vec3d& p : post.mesh.positions) p.y += 0.4;
+  scene.obstacles.push_back(std::move(post));
+  fit_thickness(scene);
+  return scene;
+}
+
+std::size_t count_conflicts(const Scene& scene) {
+  return face_pairs(find_start_conflicts(scene, true)).size();
+}
+
+TEST(Dressing, DrawsTheSeamsOfATubeTogetherRoundAPost) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  std::vector<std::string> notes;
+  int watched = 0;
+  const auto reports =
+      put_garments_on(scene, notes, [&](const Simulator&, const DressingStatus& status) {
+        ++watched;
+        EXPECT_EQ(status.garment, "tube");
+        return true;
+      });
+  ASSERT_EQ(reports.size(), 1u);
+  ASSERT_TRUE(reports[0].dressing);
+  const DressingReport& worn = *reports[0].dressing;
+  EXPECT_EQ(watched, worn.closing_steps + worn.settling_steps);
+  EXPECT_EQ(count_conflicts(scene), 0u);
+
+  // 72 cm of cloth go round 63 cm of post, so nothing has to be stretched but by the weight.
+  EXPECT_LT(worn.seam_strain_p95, 0.05);
+  EXPECT_EQ(worn.gathered_share, 0);
+  EXPECT_EQ(reports[0].arrangement.pairs_before, 0u);
+}
+
+TEST(Dressing, GivesTheSameBitsTwice) {
+  const TemporaryFolder folder;
+  Scene first = tube_scene(folder, 36, 15), second = tube_scene(folder, 36, 15);
+  std::vector<std::string> notes;
+  set_thread_count(1);
+  put_garments_on(first, notes);
+  set_thread_count(2);
+  put_garments_on(second, notes);
+  set_thread_count(0);
+  EXPECT_EQ(first.cloths[0].mesh.positions, second.cloths[0].mesh.positions);
+}
+
+TEST(Dressing, MovesPanelsThatStandInTheBody) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 40, 6);  // 4 cm inside the post
+  std::vector<std::string> notes;
+  const auto reports = put_garments_on(scene, notes);
+  const Arrangement& start = reports.at(0).arrangement;
+  EXPECT_GT(start.pairs_before, 0u);
+  EXPECT_EQ(start.pairs_left, 0u);
+  EXPECT_FALSE(start.moved.empty());
+  EXPECT_EQ(count_conflicts(scene), 0u);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].find("panel 'front'"), std::string::npos) << notes[0];
+}
+
+TEST(Dressing, LeavesAGarmentThatFindsNoStartAndNamesItsPanels) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  // A wall that goes through the whole garment, which neither lifting nor bending clears.
+  Obstacle wall;
+  wall.name = "wall";
+  wall.mesh = make_box({2, 2, 0.01}, 0.2);
+  for (Vec3d& p : wall.mesh.positions) std::swap(p.x, p.z);
+  for (Triangle& t : wall.mesh.faces) std::swap(t[1], t[2]);
+  scene.obstacles.push_back(std::move(wall));
+
+  const auto before = scene.cloths[0].mesh.faces;
+  std::vector<std::string> notes;
+  const auto reports = put_garments_on(scene, notes);
+  EXPECT_GT(reports.at(0).arrangement.pairs_left, 0u);
+  EXPECT_FALSE(reports.at(0).dressing);
+  EXPECT_EQ(scene.cloths[0].mesh.faces, before);
+  EXPECT_NE(notes.back().find("and body 'wall'"), std::string::npos) << notes.back();
+}
+
+TEST(Dressing, EndsWhenTheWatchSaysSo) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  std::vector<std::string> notes;
+  int steps = 0;
+  const auto stop = [&](const Simulator&, const DressingStatus&) { return ++steps < 3; };
+  EXPECT_THROW(put_garments_on(scene, notes, stop), DressingCancelled);
+  EXPECT_EQ(steps, 3);
+}
+
+TEST(DrapeCache, GivesBackWhatWasSavedAndNothingElse) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  const std::string key = drape_key(scene);
+  Drape drape;
+  drape.positions = {scene.cloths[0].mesh.positions};
+  for (Vec3d& p : drape.positions[0]) p.x += 1.0 / 3;
+  drape.notes = {"a note"};
+  const std::string place = folder.path("cache");
+  save_drape(place, key, drape);
+
+  const auto back = load_drape(place, key, scene);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->positions, drape.positions);
+  EXPECT_EQ(back->notes, drape.notes);
+
+  // Another fabric, another parameter or a damaged file is no hit.
+  Scene other = scene;
+  other.cloths[0].material.density *= 2;
+  EXPECT_NE(drape_key(other), key);
+  other = scene;
+  other.parameters.proximity.stiffness *= 2;
+  EXPECT_NE(drape_key(other), key);
+  EXPECT_FALSE(load_drape(place, drape_key(other), scene));
+
+  const std::string file = place + "/" + key + ".drape";
+  std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekp(-3, std::ios::end);
+  bytes.put('x');
+  bytes.close();
+  EXPECT_FALSE(load_drape(place, key, scene));
+  std::filesystem::resize_file(file, 40);
+  EXPECT_FALSE(load_drape(place, key, scene));
+}
+
+}  // namespace
+}  // namespace icloth
