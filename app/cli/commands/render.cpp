@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "app/common/camera_json.h"
+#include "app/common/dressing_progress.h"
 #include "app/common/element_names.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
@@ -159,7 +160,8 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin);
+  job.scene =
+      open_scene(common.scene, scene_overrides(common), &job.origin, show_dressing(common.quiet));
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);

@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
 #include "sim/garment/open_scene.h"
@@ -13,7 +14,8 @@ int run_replay(const ReplayOptions& options) {
   // The recording says which scene to run, on which build.
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
-  job.scene = open_scene(recording.scene, recording.overrides, &job.origin);
+  job.scene =
+      open_scene(recording.scene, recording.overrides, &job.origin, show_dressing(options.quiet));
   check_recording(recording, *job.scene, options.recording);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
@@ -56,7 +57,8 @@ void print_profile(const RunStatistics& statistics) {
 HeadlessJob make_job(const RunOptions& options, Recording& input) {
   const SimulationOptions& common = options.simulation;
   HeadlessJob job;
-  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin);
+  job.scene =
+      open_scene(common.scene, scene_overrides(common), &job.origin, show_dressing(common.quiet));
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     check_recording(input, *job.scene, options.input_file);

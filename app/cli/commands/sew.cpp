@@ -4,7 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/common/progress.h"
+#include "app/common/dressing_progress.h"
+#include "app/common/headless.h"
 #include "kernels/index.h"
 #include "sim/files/body_io.h"
 #include "sim/files/error.h"
@@ -44,11 +45,6 @@ Scene make_scene(const SewOptions& options, std::vector<std::string>& notes) {
   return scene;
 }
 
-void print_notes(const std::vector<std::string>& notes, std::size_t first) {
-  for (std::size_t i = first; i < notes.size(); ++i)
-    std::fprintf(stderr, "icloth: note: %s\n", one_line(notes[i]).c_str());
-}
-
 /// Panels and stitches as they are sewn.
 void print_pattern(const Garment& garment, const TriangleMesh& mesh) {
   const SewnGarment& sewn = garment.sewn;
@@ -65,11 +61,10 @@ void print_pattern(const Garment& garment, const TriangleMesh& mesh) {
     const auto side = [&](Index panel, Index edge) {
       return excerpt(sewn.panel_names[at(panel)]) + ":" + std::to_string(edge);
     };
-    const auto [shorter, longer] = std::minmax(seam.length_a, seam.length_b);
     std::printf("%-24s %-24s %8.1f %8.1f %7.3f %7zu %9.1f%s\n",
                 side(seam.panel_a, seam.edge_a).c_str(), side(seam.panel_b, seam.edge_b).c_str(),
-                100 * seam.length_a, 100 * seam.length_b, longer / shorter, seam.points.size(),
-                100 * seam.mean_gap, longer > kGatherRatio * shorter ? "  gather" : "");
+                100 * seam.length_a, 100 * seam.length_b, gather_ratio(seam), seam.points.size(),
+                100 * seam.mean_gap, gather_ratio(seam) > kGatherRatio ? "  gather" : "");
   }
   std::printf("%zu vertices, %zu triangles, %zu panels, %zu stitches\n", mesh.positions.size(),
               mesh.faces.size(), faces.size(), sewn.seams.size());
@@ -104,23 +99,12 @@ void print_report(const GarmentReport& report, std::size_t intersections, double
 int run_sew(const SewOptions& options) {
   const Clock::time_point begin = Clock::now();
   set_thread_count(options.threads);
-  std::vector<std::string> notes;
-  Scene scene = make_scene(options, notes);
-  const std::size_t shown = notes.size();
-  if (!options.quiet) print_notes(notes, 0);
-
-  // Dressing takes a while; a line on the terminal says how far it is.
-  std::unique_ptr<Progress> progress;
-  const DressingWatch watch = [&](const Simulator&, const DressingStatus& status) {
-    if (status.step == 1)
-      progress = std::make_unique<Progress>(status.settling ? "settling" : "drawing seams together",
-                                            status.most_steps, options.quiet);
-    progress->update(status.step);
-    return true;
-  };
-  const std::vector<GarmentReport> reports = put_garments_on(scene, notes, watch);
-  progress.reset();
-  if (!options.quiet) print_notes(notes, shown);
+  SceneOrigin read, dressed;
+  Scene scene = make_scene(options, read.notes);
+  if (!options.quiet) print_notes(read);
+  const std::vector<GarmentReport> reports =
+      put_garments_on(scene, dressed.notes, show_dressing(options.quiet));
+  if (!options.quiet) print_notes(dressed);
 
   // The file is written when the exact test finds nothing, so that every program can wear it.
   const std::size_t intersections = face_pairs(find_start_conflicts(scene, true)).size();

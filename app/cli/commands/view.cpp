@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "app/window/viewer.h"
 #include "sim/files/error.h"
@@ -18,8 +19,8 @@ int run_view(const ViewOptions& options) {
 
   // The notes go to the terminal that the window was opened from, and into a panel.
   SceneOrigin origin;
-  const std::shared_ptr<const Scene> scene =
-      open_scene(simulation.scene, scene_overrides(simulation), &origin);
+  const std::shared_ptr<const Scene> scene = open_scene(
+      simulation.scene, scene_overrides(simulation), &origin, show_dressing(simulation.quiet));
   print_notes(origin);
   Viewer viewer(options, build, scene, std::move(origin));
   viewer.run();
