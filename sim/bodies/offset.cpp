@@ -1,5 +1,6 @@
 #include "sim/bodies/offset.h"
 
+#include "kernels/index.h"
 #include "sim/bodies/eigen.h"
 #include "sim/bodies/skinned_poses.h"
 
@@ -9,7 +10,6 @@ namespace {
 std::vector<Vec3d> normals_of(const std::vector<Vec3d>& x,
                               const std::vector<std::array<Index, 3>>& faces) {
   std::vector<Vec3d> normals(x.size());
-  const auto at = [](Index v) { return static_cast<std::size_t>(v); };
   for (const std::array<Index, 3>& f : faces) {
     const Vec3d n = cross(x[at(f[1])] - x[at(f[0])], x[at(f[2])] - x[at(f[0])]);
     for (const Index v : f) normals[at(v)] += n;

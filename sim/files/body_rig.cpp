@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 
@@ -19,8 +20,6 @@ Affine affine_of(const aiMatrix4x4& m) {
 }
 
 Vec3d vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class T>
 int order(T a, T b) {

@@ -219,6 +219,8 @@ class Decoder {
     std::vector<Index> nodes, targets;
     array(nodes);
     array(targets);
+
+    // Each node that moves has keys of three kinds; rotations are unit quaternions.
     for (const Index node : nodes) {
       require_index(node, rig.parent.size());
       NodeChannel& channel = clip.channels.emplace_back();
@@ -230,6 +232,8 @@ class Decoder {
       });
       read_keys(channel.scale, clip.duration, [](const VectorKey& k) { return is_fine(k.value); });
     }
+
+    // The weights of morph targets follow.
     for (const Index target : targets) {
       require_index(target, rig.morph_rest.size());
       MorphChannel& channel = clip.morphs.emplace_back();

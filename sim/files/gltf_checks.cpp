@@ -187,6 +187,8 @@ class GltfChecker {
   void check_skin(const JsonValue& skin) const {
     const auto joints = member(skin, "joints");
     if (!joints) skin.refuse("a key 'joints'");
+
+    // A joint that is listed twice would have two matrices.
     const std::size_t nodes = node_count();
     std::vector<bool> is_joint(nodes, false);
     std::int64_t count = 0;
@@ -197,6 +199,8 @@ class GltfChecker {
       ++count;
     }
     check_reference(skin, "skeleton", nodes);
+
+    // Without matrices, all of them are the identity.
     const auto matrices = member(skin, "inverseBindMatrices");
     if (matrices && elements_of(*matrices) < count)
       matrices->refuse("an accessor with a matrix for each of the " + std::to_string(count) +
@@ -206,6 +210,8 @@ class GltfChecker {
   /// Channels refer to samplers and nodes that are there, and samplers have a value for every time.
   void check_animation(const JsonValue& animation) const {
     const auto samplers = member(animation, "samplers"), channels = member(animation, "channels");
+
+    // A cubic sampler has three values for a time, so more values than times are no mistake.
     const std::vector<JsonValue> all = samplers ? samplers->items() : std::vector<JsonValue>{};
     for (const JsonValue& sampler : all) {
       const auto input = member(sampler, "input"), output = member(sampler, "output");
@@ -215,6 +221,8 @@ class GltfChecker {
         output->refuse("an accessor with a value for each of the " +
                        std::to_string(elements_of(*input)) + " times");
     }
+
+    // A channel without a target moves nothing.
     if (!channels) return;
     for (const JsonValue& channel : channels->items()) {
       check_reference(channel, "sampler", all.size());

@@ -167,6 +167,14 @@ std::string brief_number(double value) {
   return out;
 }
 
+std::string first_items(std::span<const std::string> items, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(items.size(), most); ++i)
+    text += (i > 0 ? ", " : "") + items[i];
+  if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
+  return text;
+}
+
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
   word = word.substr(0, kLongestName);  // it may come from a file
   std::string_view best;

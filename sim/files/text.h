@@ -33,6 +33,9 @@ std::string rounded_text(double value, int digits = 3);
 /// A number for a narrow column, two digits where they matter: "0.12", "340", "4e-4".
 std::string brief_number(double value);
 
+/// "a, b and 3 more": the first `most` items, and how many there are beyond them.
+std::string first_items(std::span<const std::string> items, std::size_t most);
+
 /// The candidate with the smallest edit distance to `word` ("" when there is none).
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> candidates);
 

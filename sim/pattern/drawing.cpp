@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernels/index.h"
 #include "sim/files/text.h"
 #include "sim/pattern/outline.h"
 
@@ -11,8 +12,6 @@ namespace icloth {
 namespace {
 
 constexpr double kMargin = 6;  ///< around every panel [cm]
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A number with two digits, which are 0.1 mm.
 std::string fixed(double value) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/ring_crossings.h"
 #include "sim/files/text.h"
@@ -19,8 +20,6 @@ constexpr int kMostDivisions = 12;  ///< rounds in which edges that are missing 
 constexpr double kDense = 0.8;      ///< mean of the outline's edges, below which a panel is finer
 constexpr double kDensest = 0.4;    ///< shortest edge length inside of such a panel
 constexpr std::size_t kMostNotes = 5;  ///< of one kind
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::string cm(double metres) { return rounded_text(100 * metres) + " cm"; }
 

@@ -4,6 +4,7 @@
 #include <boost/polygon/voronoi.hpp>
 #include <cmath>
 
+#include "kernels/index.h"
 #include "sim/pattern/panel_fill.h"
 
 namespace icloth {
@@ -11,8 +12,6 @@ namespace {
 
 constexpr int kRounds = 10;          ///< of smoothing
 constexpr double kRelaxation = 0.9;  ///< share of the way to the better place
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// The directed edges of triangles: which triangle has the edge from a to b on its left.
 class DirectedEdges {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "kernels/index.h"
 #include "sim/files/box.h"
+#include "sim/files/disjoint_sets.h"
 #include "sim/files/error.h"
 #include "sim/files/ring_crossings.h"
 #include "sim/files/text.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr int kCurveSegments = 32;                             ///< of a curve, for the checks
 constexpr double kSmallestGarment = 0.3, kLargestGarment = 3;  ///< [m]
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::string cm(double metres) { return rounded_text(100 * metres) + " cm"; }
 
@@ -69,31 +68,22 @@ void check_outline(const Pattern& pattern, Panel& panel) {
 class SewnCorners {
  public:
   /// Sews all stitches but one (or none, with a number beyond them).
-  SewnCorners(const Pattern& pattern, std::size_t left_out) : pattern_(pattern) {
-    std::size_t count = 0;
-    for (const Panel& panel : pattern.panels) {
-      first_.push_back(count);
-      count += panel.corners.size();
-    }
-
-    // Every corner is by itself until a stitch joins it to another.
-    root_.resize(count);
-    std::iota(root_.begin(), root_.end(), std::size_t{0});
-
+  SewnCorners(const Pattern& pattern, std::size_t left_out)
+      : pattern_(pattern), first_(first_corners(pattern)), corners_(first_.back()) {
     for (std::size_t s = 0; s < pattern.stitches.size(); ++s) {
       if (s == left_out) continue;
       const Stitch& stitch = pattern.stitches[s];
       const auto [a0, a1] = ends(stitch.sides[0]);
       const auto [b0, b1] = ends(stitch.sides[1]);
-      join(a0, stitch.right_wrong ? b0 : b1);
-      join(a1, stitch.right_wrong ? b1 : b0);
+      corners_.unite(a0, stitch.right_wrong ? b0 : b1);
+      corners_.unite(a1, stitch.right_wrong ? b1 : b0);
     }
   }
 
   /// Whether the start and the end of an edge have become one.
   bool is_closed(PanelSide side) {
     const auto [a, b] = ends(side);
-    return find(a) == find(b);
+    return corners_.find(a) == corners_.find(b);
   }
 
  private:
@@ -101,17 +91,16 @@ class SewnCorners {
     const PanelEdge& edge = pattern_.panels[at(side.panel)].edges[at(side.edge)];
     return {first_[at(side.panel)] + at(edge.start), first_[at(side.panel)] + at(edge.end)};
   }
-  std::size_t find(std::size_t i) {
-    while (root_[i] != i) i = root_[i] = root_[root_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) {
-    i = find(i), j = find(j);
-    root_[std::max(i, j)] = std::min(i, j);
+  /// The number of the first corner of each panel, and at last that of all corners.
+  static std::vector<std::size_t> first_corners(const Pattern& pattern) {
+    std::vector<std::size_t> first{0};
+    for (const Panel& panel : pattern.panels) first.push_back(first.back() + panel.corners.size());
+    return first;
   }
 
   const Pattern& pattern_;
-  std::vector<std::size_t> first_, root_;
+  std::vector<std::size_t> first_;
+  DisjointSets corners_;
 };
 
 /// Notes stitches that make one point of the two ends of an edge. A ring such as a cuff does not:

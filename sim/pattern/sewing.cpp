@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "kernels/index.h"
+#include "sim/files/disjoint_sets.h"
 #include "sim/files/text.h"
 #include "sim/pattern/pattern_checks.h"
 
@@ -18,8 +19,6 @@ constexpr double kUvGap = 1.0 / 64;
 /// round, is reported as twisted.
 constexpr double kTwisted = 0.5;
 constexpr double kTooShort = 0.1;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 std::string cm(double metres) { return rounded_text(100 * metres) + " cm"; }
 
@@ -130,31 +129,23 @@ Sewing::Gap Sewing::gap_between(std::span<const Index> a, std::span<const Index>
 /// Makes one vertex of the points that are sewn together, directly or by way of others, at the mean
 /// of their places.
 void Sewing::merge_points() {
-  // The root of a group is its first point.
-  std::vector<Index> root(garment_.open_positions.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](Index i) {
-    while (root[at(i)] != i) i = root[at(i)] = root[at(root[at(i)])];
-    return i;
-  };
+  const std::size_t count = garment_.open_positions.size();
+  DisjointSets groups(count);
   for (const SewnSeam& seam : garment_.seams)
-    for (const auto& [a, b] : seam.points) {
-      const Index i = find(a), j = find(b);
-      root[at(std::max(i, j))] = std::min(i, j);
-    }
+    for (const auto& [a, b] : seam.points) groups.unite(at(a), at(b));
 
-  // Groups are numbered in the order of their roots.
+  // Groups are numbered in the order of their first points, which stand for them.
   std::vector<Vec3d>& positions = garment_.mesh.positions;
   std::vector<double> members;
-  garment_.merged.resize(root.size());
-  for (std::size_t v = 0; v < root.size(); ++v) {
-    const Index r = find(static_cast<Index>(v));
-    if (at(r) == v) {
+  garment_.merged.resize(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const std::size_t first = groups.find(v);
+    if (first == v) {
       garment_.merged[v] = static_cast<Index>(positions.size());
       positions.push_back({});
       members.push_back(0);
     } else {
-      garment_.merged[v] = garment_.merged[at(r)];
+      garment_.merged[v] = garment_.merged[first];
     }
     positions[at(garment_.merged[v])] += garment_.open_positions[v];
     ++members[at(garment_.merged[v])];

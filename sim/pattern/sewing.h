@@ -3,6 +3,7 @@
 // alone; placing and sewing are cheap and can be repeated with other placements.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -46,6 +47,11 @@ struct SewnSeam {
   std::vector<std::array<Index, 2>> points;  ///< pairs that are sewn together
   double mean_gap = 0, largest_gap = 0;      ///< between the points of a pair before sewing [m]
 };
+
+/// The longer edge of a seam over the shorter one; above kGatherRatio it gathers.
+inline double gather_ratio(const SewnSeam& seam) {
+  return std::max(seam.length_a, seam.length_b) / std::min(seam.length_a, seam.length_b);
+}
 
 /// Vertices of an edge with a label such as "lower_interface" or "collar", which can be held while
 /// the garment is dressed.

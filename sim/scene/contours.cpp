@@ -2,35 +2,15 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <tuple>
 
 #include "kernels/index.h"
+#include "sim/files/disjoint_sets.h"
 #include "sim/scene/exact_triangles.h"
 
 namespace icloth {
 namespace {
-
-/// Sets that can be united; the smallest member stands for its set.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::size_t i, std::size_t j) {
-    const std::size_t a = find(i), b = find(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 /// The edge through the face, where it goes through.
 std::optional<Piercing> pierce(const RepairMesh& mesh, Index edge, Index face) {
@@ -67,7 +47,7 @@ std::vector<Contour> trace_contours(const RepairMesh& mesh,
 
   // Segments with a common end belong to one contour. An end is an edge through a face, either of
   // the own sheet (0) or of the other one (1).
-  Sets sets(segments.size());
+  DisjointSets sets(segments.size());
   std::map<std::tuple<int, Index, Index>, std::size_t> ends;
   std::vector<std::pair<std::size_t, Piercing>> piercings;
   for (std::size_t s = 0; s < segments.size(); ++s) {

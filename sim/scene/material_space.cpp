@@ -2,53 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "kernels/index.h"
+#include "sim/files/disjoint_sets.h"
 #include "sim/files/text.h"
+#include "sim/scene/half_edges.h"
 
 namespace icloth {
 namespace {
-
-/// A side of a face: corner `corner` to the next one.
-struct Side {
-  std::array<Index, 2> edge;  // smaller vertex first
-  Index face, corner;
-};
-
-std::vector<Side> sorted_sides(const std::vector<Triangle>& faces) {
-  std::vector<Side> sides;
-  sides.reserve(3 * faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    for (Index c = 0; c < 3; ++c) {
-      const Index a = faces[f][at(c)], b = faces[f][at((c + 1) % 3)];
-      sides.push_back({{std::min(a, b), std::max(a, b)}, static_cast<Index>(f), c});
-    }
-  std::ranges::sort(sides, [](const Side& a, const Side& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
-  });
-  return sides;
-}
-
-/// Sets of faces that are joined pair by pair; the smallest face stands for its set.
-class FaceSets {
- public:
-  explicit FaceSets(std::size_t faces) : parent_(faces) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index f) {
-    while (parent_[at(f)] != f) f = parent_[at(f)] = parent_[at(parent_[at(f)])];
-    return f;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parent_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 double real_area(const std::vector<Vec3d>& x, const Triangle& t) {
   return 0.5 * norm(cross(x[at(t[1])] - x[at(t[0])], x[at(t[2])] - x[at(t[0])]));
@@ -74,19 +35,19 @@ double doubled_material_area(const std::array<Vec2d, 3>& corners) {
 
 std::vector<Index> find_panels(const TriangleMesh& mesh) {
   // Faces are joined wherever they share an edge that is no seam.
-  FaceSets sets(mesh.faces.size());
-  const std::vector<Side> sides = sorted_sides(mesh.faces);
+  DisjointSets sets(mesh.faces.size());
+  const std::vector<HalfEdge> sides = sorted_half_edges(mesh.faces);
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t j = i + 1; j < end; ++j) {
-        const Side& a = sides[i];
-        const Side& b = sides[j];
+        const HalfEdge& a = sides[i];
+        const HalfEdge& b = sides[j];
         const bool same_way =
             mesh.faces[at(a.face)][at(a.corner)] == mesh.faces[at(b.face)][at(b.corner)];
         if (joined_in_material(mesh.uv[at(a.face)], at(a.corner), mesh.uv[at(b.face)], at(b.corner),
                                same_way))
-          sets.join(a.face, b.face);
+          sets.unite(at(a.face), at(b.face));
       }
   }
 
@@ -94,8 +55,8 @@ std::vector<Index> find_panels(const TriangleMesh& mesh) {
   std::vector<Index> panel(mesh.faces.size());
   Index count = 0;
   for (std::size_t f = 0; f < panel.size(); ++f) {
-    const Index first = sets.find(static_cast<Index>(f));
-    panel[f] = at(first) == f ? count++ : panel[at(first)];
+    const std::size_t first = sets.find(f);
+    panel[f] = first == f ? count++ : panel[first];
   }
   return panel;
 }

@@ -9,6 +9,7 @@
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
 #include "sim/scene/edge_lengths.h"
+#include "sim/scene/half_edges.h"
 #include "sim/scene/material_space.h"
 
 namespace icloth {
@@ -16,12 +17,6 @@ namespace {
 
 constexpr double kSmallestArea = 1e-12;  // [m²]; below it Dm⁻¹ is noise
 using Corners = std::array<Vec2d, 3>;    // material coordinates of a face [m]
-
-struct HalfEdge {
-  std::array<Index, 2> edge;  // smaller vertex first
-  Index face;
-  Index corner;  // the edge runs from this corner of the face to the next
-};
 
 std::string element(const Cloth& cloth, const char* kind, std::size_t number) {
   return "cloth " + in_quotes(cloth.name) + ", " + kind + " " + std::to_string(number);
@@ -129,25 +124,6 @@ double rest_angle(const std::vector<Vec3d>& x, const std::array<Index, 4>& v) {
   const Vec3d n0 = normalized(cross(edge, x[at(v[2])] - x[at(v[0])]));
   const Vec3d n1 = normalized(cross(x[at(v[3])] - x[at(v[0])], edge));
   return std::atan2(dot(normalized(edge), cross(n0, n1)), dot(n0, n1));
-}
-
-/// All half-edges of an object, sorted so that those of one edge stand together.
-std::vector<HalfEdge> sorted_half_edges(const World& world, const WorldObject& object) {
-  // Faces of any number may meet at an edge, therefore sorting is simpler than linking pairs.
-  std::vector<HalfEdge> half_edges;
-  half_edges.reserve(3 * at(object.face_count));
-  for (Index f = object.first_face; f < object.first_face + object.face_count; ++f) {
-    const Triangle& t = world.face[at(f)];
-    for (Index corner = 0; corner < 3; ++corner) {
-      const Index a = t[at(corner)], b = t[at((corner + 1) % 3)];
-      half_edges.push_back({{std::min(a, b), std::max(a, b)}, f, corner});
-    }
-  }
-
-  std::ranges::sort(half_edges, [](const HalfEdge& a, const HalfEdge& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.face < b.face;
-  });
-  return half_edges;
 }
 
 void append_object(World& world, const std::string& name, bool cloth, std::size_t source,
@@ -275,7 +251,9 @@ double rest_length(const World& world, const WorldObject& object, const Cloth& c
 /// lengths at rest of its edges.
 void append_edges(World& world, const WorldObject& object, const Cloth* cloth,
                   const std::vector<Corners>& corners, std::vector<double>& lengths) {
-  const std::vector<HalfEdge> half_edges = sorted_half_edges(world, object);
+  const std::span<const Triangle> faces(world.face);
+  const std::vector<HalfEdge> half_edges = sorted_half_edges(
+      faces.subspan(at(object.first_face), at(object.face_count)), object.first_face);
   const bool metric_uv = cloth && uv_is_metric(*cloth);
   const bool flat = cloth && (cloth->flat_angles || cloth->rest_in_uv);
   for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
