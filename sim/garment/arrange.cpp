@@ -9,6 +9,7 @@
 #include <span>
 
 #include "kernels/index.h"
+#include "sim/bodies/offset.h"
 #include "sim/files/box.h"
 #include "sim/files/text.h"
 #include "sim/scene/intersections.h"
@@ -33,7 +34,6 @@ struct Surroundings {
   std::vector<int> group;  ///< −1: body
   std::vector<std::string> names;
   std::vector<std::size_t> first_face;  ///< of each name
-  std::vector<TriangleMesh> bodies;     ///< at time 0
 
   void add(const std::string& name, std::span<const Vec3d> x, std::span<const Triangle> t,
            int number) {
@@ -56,7 +56,7 @@ Surroundings surroundings_of(const Scene& scene, std::span<const std::size_t> on
   for (const Obstacle& obstacle : scene.obstacles) {
     TriangleMesh body = obstacle.mesh;
     obstacle.pose(0, body.positions);
-    if (depth > 0) body.positions = shrunk(body, depth);
+    if (depth > 0) offset_along_normals(body.positions, body.faces, -depth);
     all.add("body " + in_quotes(obstacle.name), body.positions, body.faces, -1);
   }
   int number = 1;
@@ -94,7 +94,6 @@ class Trial {
     std::vector<IntersectingFaces> found = find_intersections(x, faces, group);
     const auto own = static_cast<Index>(cloth_.mesh.faces.size());
     std::erase_if(found, [&](const IntersectingFaces& pair) { return pair.a >= own; });
-    last_count_ = found.size();
     return found;
   }
 
@@ -109,6 +108,7 @@ class Trial {
 
   /// The pairs in words, the most frequent first.
   std::vector<std::string> clauses(std::span<const IntersectingFaces> pairs) const {
+    // Panels are named before what they meet.
     std::map<std::pair<std::string, std::string>, std::size_t> count;
     for (const IntersectingFaces& pair : pairs) {
       std::string a = name_of(pair.a), b = name_of(pair.b);
@@ -117,10 +117,13 @@ class Trial {
         return p_is_panel != q_is_panel ? p_is_panel : p < q;
       })];
     }
+
+    // Names with their numbers of pairs, from the largest to the smallest.
     std::vector<std::pair<std::size_t, std::string>> sorted;
     for (const auto& [names, pairs_of] : count)
       sorted.emplace_back(pairs_of, names.first + " and " + names.second);
     std::ranges::stable_sort(sorted, std::ranges::greater{}, &decltype(sorted)::value_type::first);
+
     std::vector<std::string> clauses;
     for (const auto& [pairs_of, text] : sorted)
       clauses.push_back(text + " (" + std::to_string(pairs_of) +
@@ -129,9 +132,7 @@ class Trial {
   }
 
   int checks() const { return checks_; }
-  std::size_t last_count() const { return last_count_; }
-  Garment& garment() { return garment_; }
-  Cloth& cloth() { return cloth_; }
+  const Pattern& pattern() const { return garment_.meshed->pattern; }
 
  private:
   std::string name_of(Index face) const {
@@ -143,7 +144,6 @@ class Trial {
   Garment garment_;
   Cloth cloth_;
   Surroundings around_;
-  std::size_t last_count_ = 0;
   int checks_ = 0;
 };
 
@@ -233,10 +233,7 @@ std::vector<PanelGroup> panel_groups(const Pattern& pattern) {
 class StandSearch {
  public:
   StandSearch(Trial& trial, std::vector<Stand>& stands, int most_checks)
-      : trial_(trial),
-        panels_(trial.garment().meshed->pattern.panels),
-        stands_(stands),
-        most_checks_(most_checks) {
+      : trial_(trial), panels_(trial.pattern().panels), stands_(stands), most_checks_(most_checks) {
     left_ = trial_.pairs(placements(stands_));
   }
 
@@ -245,7 +242,7 @@ class StandSearch {
   const std::vector<IntersectingFaces>& run() {
     PanelGroup all{std::vector<std::size_t>(panels_.size()), false};
     std::iota(all.panels.begin(), all.panels.end(), std::size_t{0});
-    const std::vector<PanelGroup> groups = panel_groups(trial_.garment().meshed->pattern);
+    const std::vector<PanelGroup> groups = panel_groups(trial_.pattern());
     try_all_together(all);
     for (std::size_t before = left_.size() + 1; before > left_.size() && !left_.empty();) {
       before = left_.size();
@@ -253,6 +250,9 @@ class StandSearch {
     }
     return left_;
   }
+
+  /// Pairs that the best stands so far leave.
+  const std::vector<IntersectingFaces>& left() const { return left_; }
 
   std::vector<PanelPlacement> placements(const std::vector<Stand>& stands) const {
     std::vector<PanelPlacement> result;
@@ -349,6 +349,8 @@ std::vector<std::string> moved_panels(const Pattern& pattern, std::span<const St
   for (std::size_t p = 0; p < stands.size(); ++p) {
     const Stand& stand = stands[p];
     std::vector<std::string> parts;
+
+    // What differs from the pattern, each in words.
     if (stand.distance > 0) parts.push_back(rounded_text(100 * stand.distance) + " cm further out");
     if (stand.lift != 0)
       parts.push_back(rounded_text(100 * std::fabs(stand.lift)) + " cm " +
@@ -358,6 +360,8 @@ std::vector<std::string> moved_panels(const Pattern& pattern, std::span<const St
       parts.push_back(*stand.radius == 0 ? "flat"
                                          : "bent to " + rounded_text(100 * *stand.radius) + " cm");
     if (parts.empty()) continue;
+
+    // The parts become one clause about the panel.
     std::string clause = "panel " + in_quotes(pattern.panels[p].name) + " is ";
     for (std::size_t i = 0; i < parts.size(); ++i)
       clause += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
@@ -367,19 +371,6 @@ std::vector<std::string> moved_panels(const Pattern& pattern, std::span<const St
 }
 
 }  // namespace
-
-std::vector<Vec3d> shrunk(const TriangleMesh& mesh, double depth) {
-  std::vector<Vec3d> normal(mesh.positions.size());
-  for (const Triangle& t : mesh.faces) {
-    const Vec3d n = cross(mesh.positions[at(t[1])] - mesh.positions[at(t[0])],
-                          mesh.positions[at(t[2])] - mesh.positions[at(t[0])]);
-    for (Index v : t) normal[at(v)] += n;
-  }
-  std::vector<Vec3d> moved = mesh.positions;
-  for (std::size_t v = 0; v < moved.size(); ++v)
-    if (norm(normal[v]) > 0) moved[v] += -depth * normalized(normal[v]);
-  return moved;
-}
 
 Arrangement arrange_garment(Scene& scene, std::size_t number, std::span<const std::size_t> on) {
   Garment& garment = scene.garments[number];
@@ -393,8 +384,8 @@ Arrangement arrange_garment(Scene& scene, std::size_t number, std::span<const st
     Trial trial(scene, number, surroundings_of(scene, on, depth));
     std::vector<Stand> stands = best;
     StandSearch search(trial, stands, kMostChecks);
-    if (depth == 0) result.pairs_before = trial.last_count();
-    const std::vector<IntersectingFaces> left = search.run();
+    if (depth == 0) result.pairs_before = search.left().size();
+    const std::vector<IntersectingFaces>& left = search.run();
     result.checks += trial.checks();
     if (depth == 0) result.pairs_moved = left.size();
     if (depth == 0 || left.size() < result.pairs_left) {

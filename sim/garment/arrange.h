@@ -2,7 +2,7 @@
 // through each other: panels are bent and moved away, then the body is made thinner.
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,10 +25,7 @@ struct Arrangement {
 
 /// Arranges one garment among the bodies at time 0 and the garments `on`, numbers in
 /// scene.garments, that are dressed already. Its placements, its cloth's start and the report are
-/// those of the best arrangement; nothing changes where it starts clean.
+/// those of the best arrangement; where it starts clean it is only raised, if at all.
 Arrangement arrange_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on);
-
-/// The surface moved inwards along its normals [m].
-std::vector<Vec3d> shrunk(const TriangleMesh& mesh, double depth);
 
 }  // namespace icloth

@@ -90,6 +90,7 @@ void add_cloth(Fingerprint& print, const Cloth& cloth) {
 
 void add_garment(Fingerprint& print, const Garment& garment) {
   print.add(garment.cloth);
+  print.add(garment.body);
   print.add(garment.layer);
   print.add(garment.plan.on);
   print.add(garment.plan.closing);
@@ -101,6 +102,10 @@ void add_garment(Fingerprint& print, const Garment& garment) {
     print.add(p.bend_radius);
   }
   for (const PanelMesh& panel : garment.meshed->panels) print.add(panel.points);
+  for (const LabelledEdge& edge : garment.sewn.labelled) {
+    print.add(edge.label);
+    print.add(edge.vertices);
+  }
 }
 
 /// Numbers and texts one after the other, in the byte order of the machine.
@@ -188,6 +193,7 @@ std::string drape_key(const Scene& scene) {
   std::vector<Vec3d> pose;
   for (const Obstacle& obstacle : scene.obstacles) {
     obstacle.pose(0, pose);
+    print.add(obstacle.name);
     print.add(pose);
     print.add(obstacle.mesh.faces);
     print.add(obstacle.friction.value_or(-1));

@@ -6,9 +6,9 @@
 
 #include "kernels/index.h"
 #include "sim/bodies/cached_poses.h"
+#include "sim/bodies/offset.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
-#include "sim/garment/arrange.h"
 #include "sim/garment/face_strain.h"
 
 namespace icloth {
@@ -44,10 +44,12 @@ struct DressingRoom {
 
 /// The body grows to its size within kGrowTime.
 void let_grow(Obstacle& body, double shrink) {
+  std::vector<Vec3d> thin = body.mesh.positions;
+  offset_along_normals(thin, body.mesh.faces, -shrink);
   std::vector<std::vector<Vec3f>> frames;
-  for (const std::vector<Vec3d>& positions : {shrunk(body.mesh, shrink), body.mesh.positions}) {
+  for (const std::vector<Vec3d>* positions : {&thin, &body.mesh.positions}) {
     std::vector<Vec3f>& frame = frames.emplace_back();
-    for (Vec3d p : positions) frame.push_back(convert<float>(p));
+    for (Vec3d p : *positions) frame.push_back(convert<float>(p));
   }
   body.poses = std::make_shared<CachedPoses>(std::move(frames), 1 / kGrowTime);
 }
@@ -150,16 +152,19 @@ class Holds {
     if (held_.empty()) return events;
     const Snapshot state = simulator.snapshot();
     for (std::size_t k = 0; k < held_.size(); ++k) {
+      // A patch of one vertex.
       InputEvent event;
       event.kind = kind;
       event.handle = static_cast<int>(k) + 1;
       event.face = held_[k].face;
       event.barycentric = {held_[k].corner == 0 ? 1.0 : 0.0, held_[k].corner == 1 ? 1.0 : 0.0,
                            held_[k].corner == 2 ? 1.0 : 0.0};
-      event.target = state.x1[at(held_[k].vertex)];
-      event.target.y = held_[k].height;
       event.radius = 1e-6;
       event.stiffness = kHoldStiffness;
+
+      // It is free to go to the sides and is held at its height.
+      event.target = state.x1[at(held_[k].vertex)];
+      event.target.y = held_[k].height;
       events.push_back(event);
     }
     return events;

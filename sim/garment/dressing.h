@@ -33,7 +33,7 @@ struct DressingStatus {
   double largest_strain = 0;     ///< outside gathers, when it was last measured
 };
 
-/// Is called after every step; false ends the dressing with a Cancelled exception.
+/// Is called after every step; false ends the dressing: DressingCancelled is thrown.
 using DressingWatch = std::function<bool(const Simulator&, const DressingStatus&)>;
 
 struct DressingCancelled {};

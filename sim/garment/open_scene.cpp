@@ -9,16 +9,7 @@
 namespace icloth {
 namespace {
 
-/// The items one after the other, at most four of them.
-std::string joined(const std::vector<std::string>& items) {
-  constexpr std::size_t kMostNamed = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(items.size(), kMostNamed); ++i)
-    text += (i > 0 ? ", " : "") + items[i];
-  if (items.size() > kMostNamed)
-    text += " and " + std::to_string(items.size() - kMostNamed) + " more";
-  return text;
-}
+constexpr std::size_t kMostNamed = 4;  // panels in a note
 
 /// What users should know about how the garment starts.
 void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
@@ -27,13 +18,14 @@ void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
     notes.push_back(cloth + " is raised by " + rounded_text(arrangement.raised) +
                     " m: its pattern, which reaches below the feet, has its origin at the waist");
   if (!arrangement.moved.empty())
-    notes.push_back(cloth + ": " + joined(arrangement.moved) + "; as the pattern has them, " +
-                    std::to_string(arrangement.pairs_before) + " pairs of faces intersect");
+    notes.push_back(cloth + ": " + first_items(arrangement.moved, kMostNamed) +
+                    "; as the pattern has them, " + std::to_string(arrangement.pairs_before) +
+                    " pairs of faces intersect");
   if (arrangement.shrink > 0 && arrangement.pairs_left == 0)
     notes.push_back(cloth + ": bodies start " + rounded_text(1000 * arrangement.shrink) +
                     " mm thinner while it is put on");
   if (arrangement.pairs_left > 0)
-    notes.push_back(cloth + " cannot be put on: " + joined(arrangement.left) +
+    notes.push_back(cloth + " cannot be put on: " + first_items(arrangement.left, kMostNamed) +
                     " intersect at the start");
 }
 

@@ -37,8 +37,7 @@ std::vector<bool> gathered_faces(const Garment& garment, const Cloth& cloth) {
   // The vertices of gathered seams are the first ring.
   std::vector<bool> reached(cloth.mesh.positions.size());
   for (const SewnSeam& seam : garment.sewn.seams) {
-    const auto [shorter, longer] = std::minmax(seam.length_a, seam.length_b);
-    if (longer <= kGatherRatio * shorter) continue;
+    if (gather_ratio(seam) <= kGatherRatio) continue;
     for (const auto& pair : seam.points)
       for (Index open : pair) reached[at(garment.sewn.merged[at(open)])] = true;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 
@@ -168,6 +169,17 @@ void parse_settings(JsonObject& object, Scene& scene) {
   if (object.has("parameters")) parse_parameters(object["parameters"], "", scene.parameters);
 }
 
+/// Refuses a garment that is worn on a body which is not there.
+void check_wearers(const Scene& scene) {
+  for (const Garment& garment : scene.garments) {
+    const auto is_wearer = [&](const Obstacle& o) { return o.name == garment.body; };
+    if (garment.body.empty() || std::ranges::any_of(scene.obstacles, is_wearer)) continue;
+    throw InputError(scene.source + ": cloth " + in_quotes(scene.cloths[at(garment.cloth)].name) +
+                     ": on: value " + in_quotes(garment.body) +
+                     ", expected the name of an obstacle");
+  }
+}
+
 }  // namespace
 
 std::optional<double> parse_friction(JsonObject& object) {
@@ -303,6 +315,7 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
     scene.cloths.push_back(std::move(loaded.cloth));
     origin.layouts.push_back(std::move(loaded.layout));
   }
+  check_wearers(scene);
   return scene;
 }
 

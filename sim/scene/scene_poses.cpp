@@ -24,16 +24,12 @@ bool is_point_cache(const std::string& name) {
 /// The clips of a file for a message; the first few are named, each with its length.
 std::string clip_names(const std::vector<Clip>& clips) {
   constexpr std::size_t kMostNamed = 8;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(clips.size(), kMostNamed); ++i) {
-    const Clip& clip = clips[i];
-    names += i > 0 ? ", " : "";
-    names += clip.name.empty() ? std::to_string(i) + " (no name)" : in_quotes(clip.name);
-    names += " (" + brief_number(clip.duration) + (clip.in_seconds ? " s)" : " frames)");
-  }
-  if (clips.size() > kMostNamed)
-    names += " and " + std::to_string(clips.size() - kMostNamed) + " more";
-  return names;
+  std::vector<std::string> names;
+  for (const Clip& clip : clips)
+    names.push_back(
+        (clip.name.empty() ? std::to_string(names.size()) + " (no name)" : in_quotes(clip.name)) +
+        " (" + brief_number(clip.duration) + (clip.in_seconds ? " s)" : " frames)"));
+  return first_items(names, kMostNamed);
 }
 
 /// The number of the clip that a scene names or counts.

@@ -10,6 +10,7 @@
 #include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/garment/drape_cache.h"
+#include "sim/garment/face_strain.h"
 #include "sim/garment/open_scene.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/material_io.h"
@@ -133,6 +134,82 @@ TEST(Dressing, LeavesAGarmentThatFindsNoStartAndNamesItsPanels) {
   EXPECT_NE(notes.back().find("and body 'wall'"), std::string::npos) << notes.back();
 }
 
+TEST(Dressing, LetsABodyGrowBackInsideTheGarment) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  const DressingReport worn = dress_garment(scene, 0, {}, 0.03);
+  EXPECT_GT(worn.closing_steps, 200);  // a second of growing, in steps of 5 ms
+  EXPECT_EQ(count_conflicts(scene), 0u);
+}
+
+TEST(Dressing, PutsInnerLayersOnFirst) {
+  // The second garment of the file is the inner one; the outer one starts outside of it.
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 46, 22);
+  Scene inner = tube_scene(folder, 36, 15);
+  inner.cloths[0].name = "inner";
+  scene.cloths.push_back(inner.cloths[0]);
+  scene.garments.push_back(inner.garments[0]);
+  scene.garments[0].layer = 1;
+  scene.garments[1].cloth = 1;
+
+  std::vector<std::string> notes;
+  const auto reports = put_garments_on(scene, notes);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0].garment, "inner");
+  EXPECT_EQ(reports[1].garment, "tube");
+  EXPECT_TRUE(reports[1].dressing);
+  EXPECT_EQ(count_conflicts(scene), 0u);
+}
+
+TEST(Dressing, RaisesAPatternWhoseOriginIsAtTheWaist) {
+  // The tube is drawn 1 m below where it belongs on a post of 1.6 m that stands on the ground.
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  for (Vec3d& p : scene.obstacles[0].mesh.positions) p.y = 2 * p.y;
+  scene.garments[0].translation.y = -0.9;
+  sew_garment(scene.garments[0], scene.cloths[0]);
+  const Arrangement start = arrange_garment(scene, 0, {});
+  EXPECT_NEAR(start.raised, 0.69 * 1.6, 1e-9);
+  EXPECT_EQ(start.pairs_left, 0u);
+
+  // One that hangs above the feet stays where it is.
+  Scene other = tube_scene(folder, 36, 15);
+  EXPECT_EQ(arrange_garment(other, 0, {}).raised, 0);
+}
+
+TEST(Dressing, RefusesAWearerThatIsNotThere) {
+  const TemporaryFolder folder;
+  folder.write("tube_specification.json", tube_pattern(36, 15));
+  const std::string scene = folder.write(
+      "s.json",
+      R"({"cloths": [{"name": "t", "pattern": "tube_specification.json", "triangles": 100,
+          "on": "womn"}], "obstacles": [{"name": "woman", "mesh": {"sphere": {"radius": 0.1}}}]})");
+  try {
+    load_scene(scene, {});
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("on: value 'womn'"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(FaceStrain, IsTheLargestPrincipalStretch) {
+  // At rest as it is sewn, then larger by a fifth in all directions.
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15);
+  Cloth& cloth = scene.cloths[0];
+  cloth.rest_in_uv = false;
+  cloth.mesh.uv.clear();
+  const World world = make_world(scene);
+  for (double strain : face_strains(world, cloth.mesh.positions)) EXPECT_NEAR(strain, 0, 1e-9);
+  std::vector<Vec3d> stretched = cloth.mesh.positions;
+  for (Vec3d& p : stretched) p = 1.2 * p;
+  for (double strain : face_strains(world, stretched)) EXPECT_NEAR(strain, 0.2, 1e-9);
+  EXPECT_EQ(percentile({4, 1, 3, 2, 5}, 0.5), 3);
+  EXPECT_EQ(percentile({4, 1, 3, 2, 5}, 1), 5);
+}
+
 TEST(Dressing, EndsWhenTheWatchSaysSo) {
   const TemporaryFolder folder;
   Scene scene = tube_scene(folder, 36, 15);
@@ -159,9 +236,15 @@ TEST(DrapeCache, GivesBackWhatWasSavedAndNothingElse) {
   EXPECT_EQ(back->positions, drape.positions);
   EXPECT_EQ(back->notes, drape.notes);
 
-  // Another fabric, another parameter or a damaged file is no hit.
+  // Another fabric, wearer, held edge or parameter, or a damaged file is no hit.
   Scene other = scene;
   other.cloths[0].material.density *= 2;
+  EXPECT_NE(drape_key(other), key);
+  other = scene;
+  other.garments[0].body = "post";
+  EXPECT_NE(drape_key(other), key);
+  other = scene;
+  other.garments[0].sewn.labelled.clear();
   EXPECT_NE(drape_key(other), key);
   other = scene;
   other.parameters.proximity.stiffness *= 2;
