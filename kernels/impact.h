@@ -10,6 +10,7 @@ struct Impact {
   std::uint64_t key;
   Stencil s;     ///< weights at the time of impact
   Vec3r normal;  ///< unit, at the time of impact, towards the side of the start
+  Real offset;   ///< δ that the pair keeps [m]
   Real toi;      ///< fraction of the step, not later than the true one
 };
 
@@ -18,6 +19,7 @@ struct KeptImpact {
   std::uint64_t key;
   Stencil s;
   Vec3r normal;
+  Real offset;      ///< δ of the pair [m]
   Real multiplier;  ///< λ of the last solve
   Index idle;       ///< rounds in a row in which it did nothing
   Index fresh;      ///< 1: collided in this round

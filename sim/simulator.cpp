@@ -8,6 +8,7 @@
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 #include "sim/scene/world.h"
+#include "sim/sewing_simulator.h"
 
 // One solver a build; each is compiled from sim/solver.cpp in its own namespace.
 namespace icloth::cpu32 {
@@ -70,6 +71,9 @@ void check_corners(const World& world) {
   }
 }
 
+/// A simulator of a scene in which seams are springs that nobody welds.
+std::unique_ptr<Simulator> make_one_solver(Build build, std::shared_ptr<const Scene> scene);
+
 }  // namespace
 
 std::string_view build_name(Build build) {
@@ -95,6 +99,14 @@ std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Sce
     throw DeviceError(std::string(build_name(build)) + ": " + reason);
   if (scene->cloths.empty())
     throw InputError("scene " + in_quotes(scene->name) + ": no cloths, expected at least one");
+  if (!scene->seams.empty())
+    return std::make_unique<SewingSimulator>(build, std::move(scene), &make_one_solver);
+  return make_one_solver(build, std::move(scene));
+}
+
+namespace {
+
+std::unique_ptr<Simulator> make_one_solver(Build build, std::shared_ptr<const Scene> scene) {
   World world = make_world(*scene);
 
   // Single precision may not tell places apart that differ in the scene.
@@ -117,6 +129,8 @@ std::unique_ptr<Simulator> make_simulator(Build build, std::shared_ptr<const Sce
   }
   throw DeviceError("no such build");
 }
+
+}  // namespace
 
 void set_thread_count(int threads) {
   static std::unique_ptr<tbb::global_control> limit;

@@ -25,6 +25,9 @@ class Simulator {
 
   virtual Build build() const = 0;
   virtual const Scene& scene() const = 0;
+  /// The scene with the meshes that are simulated now: where a seam was welded, its two sides share
+  /// vertices. snapshot() is one of this scene; everything else counts elements as scene() does.
+  virtual const Scene& sewn_scene() const { return scene(); }
 
   /// One step of parameters().step.time_step. Never throws for numerical reasons: a refused step
   /// keeps the state before it and says so in the report.

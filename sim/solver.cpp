@@ -78,6 +78,8 @@ Solver::Solver(std::shared_ptr<const Scene> scene, World world, int device)
   state_.v.resize(mesh_.vertices);
   state_.v.fill(Vec3r{});
   upload_skins();
+  upload_seams(mesh_, state_, *scene_, world_);
+  state_.seams.resize(scene_->seams.size());
   set_parameters(scene_->parameters);
   reserve_memory();
 }
@@ -190,6 +192,7 @@ void Solver::accept_substep(StepReport& report, double dt) {
   pinch_.take_back(state_, parameters_);
   implicit_.finish_substep(state_);
   work_ += implicit_.work();
+  advance_seams(mesh_, parameters_, state_, real(dt));
   if (impact_zones_.corrected()) work_ += zone_work(dt);
 }
 
@@ -329,7 +332,9 @@ void Solver::restore(const Snapshot& snapshot) {
   check_memory(snapshot, {.vertices = mesh_.vertices,
                           .cloth_vertices = mesh_.cloth_vertices,
                           .cloth_faces = mesh_.cloth_faces,
-                          .objects = static_cast<Index>(world_.objects.size())});
+                          .objects = static_cast<Index>(world_.objects.size()),
+                          .stitches = mesh_.stitches.size(),
+                          .seams = static_cast<Index>(scene_->seams.size())});
   use_device();
   upload(snapshot, state_);
   broad_phase_.follow_memory();

@@ -99,6 +99,7 @@ void Solver::finish_step(StepReport& report) {
   }
   report.offending.clear();
   report.no_room = false;
+  watch_seams(mesh_, state_);
   state_.time += report.dt;
   report.step = ++state_.step;
 }
@@ -110,6 +111,7 @@ void Solver::report_end_state(StepReport& report) {
   energy_ = energy;
   report.state_hash = hash_state(state_);
   report.pinched = pinch_.vertices(state_);
+  report_seams(mesh_, state_, report);
 }
 
 /// Time that no stage has measured counts as the rest of the step.

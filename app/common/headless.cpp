@@ -79,7 +79,7 @@ void print_notes(const SceneOrigin& origin) {
 }
 
 std::size_t count_penetrations(const Simulator& simulator) {
-  const Scene& scene = simulator.scene();
+  const Scene& scene = simulator.sewn_scene();
   const Snapshot state = simulator.snapshot();
   const SceneFaces soup = scene_faces(scene);
   return find_intersections(state.x1, soup.faces, soup.group).size();
@@ -134,6 +134,11 @@ HeadlessResult run_headless(const HeadlessJob& job) {
       result.start_refused = true;
       result.start_exit_code = 1;
       return result;
+    }
+
+    for (const std::string& note : report.notes) {
+      progress.finish();
+      std::fprintf(stderr, "icloth: note: %s\n", one_line(note).c_str());
     }
 
     // A refused step is reported, and ends the run or is passed over.

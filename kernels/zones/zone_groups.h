@@ -19,7 +19,7 @@ struct Concatenate {
       all[i].fresh = 0;
     } else {
       const Impact& m = impacts[i - old.size()];
-      all[i] = {m.key, m.s, m.normal, Real(0), 0, 1};
+      all[i] = {m.key, m.s, m.normal, m.offset, Real(0), 0, 1};
     }
   }
 };
@@ -171,7 +171,7 @@ struct LoadConstraints {
     Int4 slot = slots[k];
     for (Index& s : slot.v)
       if (s != kNone) s = new_slot[s];
-    constraints[i] = {kept[k].s, slot, kept[k].normal};
+    constraints[i] = {kept[k].s, slot, kept[k].normal, kept[k].offset};
     zone_slots[i] = slot;
     multiplier[i] = kept[k].multiplier;
   }

@@ -111,7 +111,7 @@ class ZoneLinear : public ZoneProblem<Team> {
           const Real missing =
               this->shortfall_at(j, [&](Index i) -> const Vec3r& { return target_[i]; });
           multiplier_[j] = 0;
-          r_[j] = missing + std::fmax(at_start - set_.offset, Real(0));
+          r_[j] = missing + std::fmax(at_start - c.offset, Real(0));
           p_[j] = r_[j];
           return norms_of(j);
         },

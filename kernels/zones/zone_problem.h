@@ -18,10 +18,11 @@ struct ZoneConstraint {
   Stencil s;     ///< obstacle vertices included
   Int4 slot;     ///< active vertex number of each corner, kNone where it cannot move
   Vec3r normal;  ///< towards the side of the start
+  Real offset;   ///< δ [m]
 };
 
 struct ZoneSettings {
-  Real offset;          ///< δ [m]
+  Real offset;          ///< the usual δ [m]
   Real tolerance;       ///< of a gap [m]: a fifth of δ
   int iterations;       ///< at most
   Real penalty;         ///< μ, of the augmented Lagrangian
@@ -129,7 +130,7 @@ class ZoneProblem {
       const Index i = corner(j, a);
       gap += c.s.w[a] * (i < 0 ? fixed_[c.s.v[a]] : position(i));
     }
-    return set_.offset - dot(c.normal, gap);
+    return c.offset - dot(c.normal, gap);
   }
 
   /// Calls visit(j, w) for every constraint of vertex i, w its weight there.

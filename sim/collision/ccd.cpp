@@ -2,6 +2,7 @@
 
 #include "kernels/ccd/elementary_ccd.h"
 #include "kernels/parallel/parallel.h"
+#include "sim/collision/seam_exclusion.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -12,8 +13,9 @@ struct ImpactTest {
   View<const Real> inverse_mass;
   View<const std::uint8_t> dirty;
   bool incremental;
-  double separation;  ///< of the degenerate fallback [m]
+  double offset;  ///< δ [m]
   LetGoView let_go;
+  SeamView seams;
 
   /// True for a pair that cannot touch anew: nothing of it can move, or no vertex of it is dirty.
   /// True also where its contacts are let go.
@@ -34,6 +36,8 @@ struct ImpactTest {
     CcdQuery<Real> q;
     for (int a = 0; a < 4; ++a) q.p0[a] = x0[v[a]], q.p1[a] = x1[v[a]];
     CcdHit hit;
+    const double keep = seams.offset(edge_edge, v, offset);
+    const double separation = 0.25 * keep;  // of the degenerate fallback
     if (!(edge_edge ? ccd_ee(q, separation, hit) : ccd_vf(q, separation, hit))) return;
 
     // The impact keeps the weights and the normal at the time of the contact.
@@ -44,6 +48,7 @@ struct ImpactTest {
       impact.s.w[a] = static_cast<Real>(hit.w[a]);
     }
     impact.normal = convert<Real>(hit.normal);
+    impact.offset = static_cast<Real>(keep);
     impact.toi = static_cast<Real>(hit.toi);
     emit(impact);
   }
@@ -103,8 +108,9 @@ void Ccd::find(SubstepContext& step, const BroadPhase& broad_phase, View<const s
                         .inverse_mass = s.inverse_mass.view(),
                         .dirty = dirty,
                         .incremental = incremental,
-                        .separation = 0.25 * static_cast<double>(step.offset()),
-                        .let_go = let_go};
+                        .offset = static_cast<double>(step.offset()),
+                        .let_go = let_go,
+                        .seams = seam_view(mesh)};
   impacts_.resize(0);
 
   // The lists are sorted by key, vertices against faces first, so that they depend on the state

@@ -4,6 +4,7 @@
 
 #include "kernels/parallel/parallel.h"
 #include "kernels/zones/zone_groups.h"
+#include "sim/scene/seam_pairs.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -28,12 +29,11 @@ struct StoreVertices {
 struct StoreConstraints {
   View<const Index> kept_of;
   View<const Real> multiplier, shortfall;
-  Real offset;
   View<KeptImpact> kept;
   ICLOTH_HD void operator()(Index i) const {
     KeptImpact& k = kept[kept_of[i]];
     k.multiplier = multiplier[i];
-    k.idle = multiplier[i] > 0 || shortfall[i] > -offset ? 0 : k.idle + 1;
+    k.idle = multiplier[i] > 0 || shortfall[i] > -k.offset ? 0 : k.idle + 1;
   }
 };
 
@@ -259,8 +259,11 @@ void ImpactZones::solve_zones(const SubstepContext& step) {
   const ImpactZoneParameters& p = step.parameters.impact_zones;
   results_.resize(vertex_first_.size() - 1);
   const ZoneArrays arrays = zone_arrays(step.state);
+  // Where a seam is open, some constraints keep a smaller offset.
+  const bool open = !step.mesh.stitches.empty();
+  const Real least = open ? std::min(step.offset(), static_cast<Real>(kSeamOffset)) : step.offset();
   const ZoneSettings settings{.offset = step.offset(),
-                              .tolerance = Real(0.2) * step.offset(),
+                              .tolerance = Real(0.2) * least,
                               .iterations = p.iterations,
                               .penalty = static_cast<Real>(p.penalty),
                               .rho = static_cast<Real>(p.rho),
@@ -313,8 +316,7 @@ void ImpactZones::store(SubstepContext& step) {
 
   // Multipliers are kept for the next round, which starts from them.
   for_each("impact_zones.store", constraints_.size(),
-           StoreConstraints{kept_of_.view(), multiplier_.view(), shortfall_.view(), step.offset(),
-                            kept_.view()});
+           StoreConstraints{kept_of_.view(), multiplier_.view(), shortfall_.view(), kept_.view()});
 }
 
 void ImpactZones::drop_idle() {

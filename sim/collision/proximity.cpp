@@ -4,6 +4,7 @@
 #include "kernels/parallel/parallel.h"
 #include "kernels/parallel/partition_point.h"
 #include "sim/collision/rest_gap.h"
+#include "sim/collision/seam_exclusion.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -25,6 +26,7 @@ struct ContactMaker {
   View<const Real> own_friction;  ///< −1: none (objects), empty: none has one
   Real line_area;                 ///< kLineLoad / (k h) [m], see carrying_area
   LetGoView let_go;
+  SeamView seams;
 
   /// Corners 0 and 2 are of the two elements, VF or EE; an obstacle's, if any, may be either.
   ICLOTH_HD Real coefficient(const Stencil& s, bool on_obstacle) const {
@@ -126,6 +128,7 @@ struct ContactMaker {
   /// that of measure_gap.
   ICLOTH_HD bool make(Contact& c, Vec3r across) const {
     if (let_go.ignores(c.s.v) || !measure_gap(c, across)) return false;
+    if (seams.holds(key_is_edge_edge(c.key), c.s.v)) return false;
     if (!comes_near(c) || are_neighbours(c.s)) return false;
     c.thickness = thickness;
     c.held = Vec3r{};
@@ -158,7 +161,8 @@ ContactMaker contact_maker(const SubstepContext& step, const LetGoView& let_go) 
           .friction_obstacle = static_cast<Real>(p.friction_obstacle),
           .own_friction = mesh.object_friction.view(),
           .line_area = static_cast<Real>(kLineLoad / (p.stiffness * p.thickness)),
-          .let_go = let_go};
+          .let_go = let_go,
+          .seams = seam_view(mesh)};
 }
 
 struct FindVertexFace {

@@ -23,18 +23,34 @@ struct Pack {
   }
 };
 
+struct Append {
+  View<const Coupling> more;
+  Index first;
+  View<Coupling> list;
+  View<Int4> slots;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Stencil& s = more[i].s;
+    list[first + i] = more[i];
+    slots[first + i] = {{s.v[0], s.v[1], s.v[2], s.v[3]}};
+  }
+};
+
 }  // namespace
 
-void Couplings::gather(View<const Contact> contacts, View<const ContactTerm> terms,
-                       Index vertices) {
+void Couplings::gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
+                       View<const Coupling> more) {
   const Index count = contacts.size() == 0 ? 0
                                            : compact("implicit.active_contacts", contacts.size(),
                                                      IsActive{terms}, active_);
-  list_.resize(count);
-  slots_.resize(count);
-  if (count == 0) return;
+  const Index total = count + more.size();
+  list_.resize(total);
+  slots_.resize(total);
+  if (total == 0) return;
   for_each("implicit.couplings", count,
            Pack{contacts, terms, active_.view(), list_.view(), slots_.view()});
+  if (more.size() > 0)
+    for_each("implicit.couplings", more.size(), Append{more, count, list_.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);
 }
 

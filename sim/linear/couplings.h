@@ -33,9 +33,11 @@ struct CouplingView {
 
 class Couplings {
  public:
-  /// Takes the contacts whose terms are active. `vertices` is the number of cloth vertices; corners
-  /// from there on belong to obstacles and are left out of the lists of vertices.
-  void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices);
+  /// Takes the contacts whose terms are active, and after them `more`. `vertices` is the number of
+  /// cloth vertices; corners from there on belong to obstacles and are left out of the lists of
+  /// vertices.
+  void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
+              View<const Coupling> more = {});
 
   CouplingView view() const { return {list_.view(), incidence_.first(), incidence_.entries()}; }
 

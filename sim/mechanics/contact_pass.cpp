@@ -131,7 +131,7 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
     // Each contact acts as the last solve left it: open or closed, sticking or sliding.
     for_each("implicit.contact_terms", contacts.size(),
              ContactTerms{motion, law, contacts.view(), terms_.view()});
-    couplings_.gather(contacts.view(), terms_.view(), step.mesh.cloth_vertices);
+    couplings_.gather(contacts.view(), terms_.view(), step.mesh.cloth_vertices, system.seams);
     solve_once(step, system, dv, pass > 0);
     motion.solved = true;
 

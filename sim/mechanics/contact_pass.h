@@ -14,6 +14,7 @@ struct ContactSystem {
   const BlockMatrix& matrix;  ///< without contacts
   View<const Vec3r> rhs;      ///< without contacts [N·s] (cloth_vertices)
   const Array<Contact>& contacts;
+  View<const Coupling> seams;     ///< that act in every pass
   View<const Vec3r> free_motion;  ///< x1 − x0 with Δv = 0 [m] (vertices)
   Real h;                         ///< from a change of velocity to one of position [s]
 };

@@ -137,6 +137,9 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
                        .point = start,
                        .free_motion = free_motion};
 
+  // The springs of open seams are linear, hence the same in every iteration.
+  seams_.assemble(step, free_motion, start.v, rule_.h);
+
   // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
   for (int iteration = 1;; ++iteration) {
     assembly_.assemble(context);
@@ -145,6 +148,7 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
                     {.matrix = assembly_.matrix(),
                      .rhs = assembly_.rhs(),
                      .contacts = proximity.contacts(),
+                     .seams = seams_.couplings(),
                      .free_motion = free_motion,
                      .h = rule_.h},
                     dv_.view(), iteration > 1);
@@ -161,7 +165,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   }
 
   // Work is that of the forces as they were linearised last, since these made the motion.
-  outer_work_ = assembly_.work(context, dv_.view());
+  outer_work_ = assembly_.work(context, dv_.view()) +
+                seams_.work(free_motion, dv_.view(), step.state.inverse_mass.view(), rule_.h);
 }
 
 /// Writes free_motion_ and, where the rule remembers the step before, free_velocity_.

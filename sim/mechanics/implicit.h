@@ -15,6 +15,7 @@
 #include "sim/collision/proximity.h"
 #include "sim/mechanics/assembly.h"
 #include "sim/mechanics/contact_pass.h"
+#include "sim/mechanics/seam_springs.h"
 #include "sim/mechanics/time_rule.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -36,8 +37,8 @@ class Implicit {
   double linearization_error() const { return linearization_error_; }
   /// Residual of the last solve, summed over all free vertices [N].
   Vec3d residual_force() const { return contacts_.residual_force(); }
-  /// Work on the cloth from x0 to the candidate, of contacts and of the forces that have no
-  /// potential [J].
+  /// Work on the cloth from x0 to the candidate, of contacts, open seams and the forces that have
+  /// no potential [J].
   double work() const { return contacts_.work() + outer_work_; }
 
  private:
@@ -48,6 +49,7 @@ class Implicit {
 
   Assembly assembly_;
   ContactPasses contacts_;
+  SeamSprings seams_;
   Array<Vec3r> dv_;           ///< Δv [m/s] (cloth_vertices + kPadding)
   TimeRule rule_{};           ///< of the substep, integrate
   Array<Vec3r> free_motion_;  ///< x1 − x0 with Δv = 0 [m] (vertices), move_freely

@@ -42,6 +42,7 @@ constexpr auto group_of(BroadPhaseParameters) { return &Parameters::broad_phase;
 constexpr auto group_of(CcdParameters) { return &Parameters::ccd; }
 constexpr auto group_of(ImpactZoneParameters) { return &Parameters::impact_zones; }
 constexpr auto group_of(GrabParameters) { return &Parameters::grab; }
+constexpr auto group_of(SeamParameters) { return &Parameters::seams; }
 
 /// The group that a member belongs to; never called, its result type is what counts.
 template <class Group, class Type>
@@ -81,6 +82,7 @@ using Solve = ImplicitParameters;
 using Broad = BroadPhaseParameters;
 using Zones = ImpactZoneParameters;
 using Grab = GrabParameters;
+using Stitch = SeamParameters;
 
 constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
 
@@ -243,6 +245,19 @@ constexpr ParameterInfo kTable[] = {
     {"grab.max_force", "strongest hand", "N", field<&Grab::max_force>(), 1e-2, 1e3, true,
      "a stuck cloth is let go of sooner", "pulls heavier cloth, stretches the grabbed patch",
      "own choice: ten times the weight of a scarf"},
+
+    {"seams.slowest", "closing time τ, first", "s", field<&Stitch::slowest>(), 1e-3, 10, true,
+     "open seams jerk together", "open seams begin to close more gently", "own choice"},
+    {"seams.fastest", "closing time τ, last", "s", field<&Stitch::fastest>(), 1e-4, 10, true,
+     "seams close against heavier loads", "loads hold seams a little open, which then do not weld",
+     "own choice"},
+    {"seams.ramp", "ramp of τ", "s", field<&Stitch::ramp>(), 1e-3, 10, true,
+     "seams pull with their whole strength sooner", "seams take longer to pull", "own choice"},
+    {"seams.max_force", "pull of a stitch", "N", field<&Stitch::max_force>(), 1e-4, 100, true,
+     "seams give way to what is between them", "seams drag heavier cloth together", "own choice"},
+    {"seams.reach", "reach of a stitch", "m", field<&Stitch::reach>(), 0, 1, false,
+     "seams that wait for a hand have to be brought nearer",
+     "seams that wait for a hand catch from farther away", "own choice"},
 };
 
 /// Other names that are read: the paper's symbols, and names of earlier versions.

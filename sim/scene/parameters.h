@@ -95,6 +95,14 @@ struct GrabParameters {
   double max_force = 10.0;
 };
 
+struct SeamParameters {
+  double slowest = 0.3;
+  double fastest = 0.02;
+  double ramp = 0.5;
+  double max_force = 0.5;
+  double reach = 0.02;
+};
+
 /// Settings of a running simulation; all of them may change between two steps.
 struct Parameters {
   StepParameters step;
@@ -107,6 +115,7 @@ struct Parameters {
   CcdParameters ccd;
   ImpactZoneParameters impact_zones;
   GrabParameters grab;
+  SeamParameters seams;
 };
 
 /// How the member behind a row is read, written and offered. Made by field() in parameters.cpp,

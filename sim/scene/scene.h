@@ -13,6 +13,7 @@
 #include "sim/scene/garment.h"
 #include "sim/scene/material.h"
 #include "sim/scene/parameters.h"
+#include "sim/scene/seam.h"
 
 namespace icloth {
 
@@ -83,6 +84,7 @@ struct Scene {
   Parameters parameters;  ///< defaults overlaid with the scene's own
   std::vector<Cloth> cloths;
   std::vector<Garment> garments;  ///< what is known of the cloths that are sewn, in their order
+  std::vector<Seam> seams;        ///< that are open at the start
   std::vector<Obstacle> obstacles;
   std::vector<ScriptedGrab> input;
   std::vector<CameraPose> cameras;

@@ -311,7 +311,8 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
     loaded.cloth.flat_angles = angles == "flat";
   }
   loaded.cloth.friction = parse_friction(object);
-  refuse_feature(object, "seams", "use one mesh whose panels share vertices");
+  if (object.has("seams") && loaded.garment)  // parse_seams reads them when all cloths are known
+    object["seams"].refuse("no such key: a pattern has its own stitches");
   object.finish();
   return loaded;
 }

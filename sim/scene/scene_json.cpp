@@ -104,14 +104,6 @@ std::vector<PathPoint> parse_path(const JsonValue& value) {
   return path;
 }
 
-Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths) {
-  if (value.json().is_number())
-    return static_cast<Index>(value.integer(0, static_cast<std::int64_t>(cloths.size()) - 1));
-  for (std::size_t i = 0; i < cloths.size(); ++i)
-    if (cloths[i].cloth.name == value.text()) return static_cast<Index>(i);
-  value.refuse("the name or number of a cloth of the scene");
-}
-
 /// Objects are told apart by name in panels and exported files, where a name is one word.
 template <class Object>
 void check_name(const std::string& where, const Object& object, std::set<std::string>& names) {
@@ -201,6 +193,14 @@ void parse_parameters(JsonValue value, const std::string& group, Parameters& par
       set_from_json(parameters, name, object[key]);
     }
   }
+}
+
+Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths) {
+  if (value.json().is_number())
+    return static_cast<Index>(value.integer(0, static_cast<std::int64_t>(cloths.size()) - 1));
+  for (std::size_t i = 0; i < cloths.size(); ++i)
+    if (cloths[i].cloth.name == value.text()) return static_cast<Index>(i);
+  value.refuse("the name or number of a cloth of the scene");
 }
 
 Index parse_vertex(JsonValue value, const LoadedCloth& cloth) {
@@ -295,7 +295,8 @@ Scene parse_scene(const nlohmann::json& json, const std::string& source,
   if (object.has("obstacles"))
     scene.obstacles = parse_obstacles(object["obstacles"], folder, triangles);
 
-  // Grabs name vertices of cloths, which are all known now.
+  // Seams and grabs name vertices of cloths, which are all known now.
+  scene.seams = parse_seams(object["cloths"], cloths, folder);
   if (object.has("input"))
     for (const JsonValue& item : object["input"].items())
       scene.input.push_back(parse_grab(item, cloths));

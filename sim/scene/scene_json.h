@@ -59,10 +59,16 @@ inline constexpr double kPatternTriangles = 4000;
 
 LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number);
 Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t number);
+/// The open seams of all cloths (key "seams" of a cloth); `list` is the list of the cloths.
+std::vector<Seam> parse_seams(const JsonValue& list, const std::vector<LoadedCloth>& cloths,
+                              const SceneFolder& folder);
 ScriptedGrab parse_grab(JsonValue value, const std::vector<LoadedCloth>& cloths);
 CameraPose parse_camera(JsonValue value);
 /// Sets parameters that are given by dotted names or in nested groups.
 void parse_parameters(JsonValue value, const std::string& group, Parameters& parameters);
+
+/// Number of a cloth of the scene by its name or number.
+Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths);
 
 /// Vertex of a cloth by its number in the file, or by its name on a grid. kNone where no face uses
 /// the vertex.

@@ -16,6 +16,9 @@ void assign(HeldForceOf<double>& to, const HeldForce& from) {
   to = {from.key, convert<double>(from.force), from.stuck};
 }
 void assign(LetGo& to, const LetGo& from) { to = from; }
+void assign(StitchStateOf<double>& to, const StitchStateOf<Real>& from) {
+  to = {static_cast<double>(from.clock), static_cast<double>(from.mark), from.age};
+}
 void assign(FaceYarns& to, const YarnAnchor& from) {
   assign(to.curvature[0], from.curvature.uu);
   assign(to.curvature[1], from.curvature.uv);
@@ -35,6 +38,9 @@ void assign_real(HeldForce& to, const HeldForceOf<double>& from) {
   to = {from.key, convert<Real>(from.force), from.stuck};
 }
 void assign_real(LetGo& to, const LetGo& from) { to = from; }
+void assign_real(StitchStateOf<Real>& to, const StitchStateOf<double>& from) {
+  to = {real(from.clock), real(from.mark), from.age};
+}
 void assign_real(YarnAnchor& to, const FaceYarns& from) {
   to = {{real(from.curvature[0]), real(from.curvature[1]), real(from.curvature[2])},
         real(from.shear)};

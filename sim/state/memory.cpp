@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "bytes are written as they lie");
 
 constexpr char kMagic[8] = {'I', 'C', 'L', 'O', 'T', 'H', 'M', 'E'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHead = sizeof kMagic + sizeof kVersion + sizeof(std::uint64_t);
 constexpr std::size_t kTail = sizeof(std::uint64_t);
 
@@ -59,6 +59,18 @@ template <class L, class Visit>
 requires std::is_same_v<std::remove_const_t<L>, LetGo>
 void fields(L& entry, const Visit& visit) {
   visit(entry.vertex), visit(entry.body), visit(entry.side);
+}
+
+template <class S, class Visit>
+requires std::is_same_v<std::remove_const_t<S>, StitchStateOf<double>>
+void fields(S& stitch, const Visit& visit) {
+  visit(stitch.clock), visit(stitch.mark), visit(stitch.age);
+}
+
+template <class S, class Visit>
+requires std::is_same_v<std::remove_const_t<S>, SeamProgress>
+void fields(S& seam, const Visit& visit) {
+  visit(seam.welded), visit(seam.delay), visit(seam.next);
 }
 
 template <class Y, class Visit>
@@ -235,6 +247,12 @@ void check_count(const MemoryPart& part, std::size_t count, const MemoryShape& s
       break;
     case Extent::cloth_faces:
       expected = shape.cloth_faces;
+      break;
+    case Extent::stitches:
+      expected = shape.stitches;
+      break;
+    case Extent::seams:
+      expected = shape.seams;
       break;
     case Extent::single:
     case Extent::any:

@@ -35,6 +35,24 @@ struct LetGo {
   Index side = 1;  ///< +1: outside is where the normals of the body's faces point, −1: opposite
 };
 
+/// How far a stitched pair of an open seam has come (sim/mechanics/seam_springs.h).
+template <class Real>
+struct StitchStateOf {
+  Real clock = 0;  ///< time for which it has been closing [s]; −1: it waits for a hand
+  Real mark = 0;   ///< distance when it last came 1 % nearer [m]
+  Index age = 0;   ///< steps since then, and 1; 0: it was not looked at yet
+};
+
+/// A pair that comes no nearer for so many steps is stuck.
+inline constexpr Index kStuckSteps = 100;
+
+/// Welding of a seam (sim/sewing_simulator.h).
+struct SeamProgress {
+  Index welded = 0;  ///< 0: open; else the place in the order in which seams were welded, from 1
+  Index delay = 0;   ///< steps to wait after a weld that failed
+  std::int64_t next = 0;  ///< step from which on welding is tried
+};
+
 /// Deformation of a face at which the friction of its yarns pulls nowhere
 /// (kernels/yarn_friction.h).
 struct FaceYarns {
@@ -109,13 +127,17 @@ struct MemoryOf {
 
   List<LetGo> let_go;  ///< sorted by vertex and body, mostly empty
 
+  List<StitchStateOf<Real>> stitches;  ///< of the pairs of open seams
+
+  std::vector<SeamProgress> seams;  ///< one for each seam of the scene
+
   std::vector<HeldPatch> hands;  ///< in the order in which they grabbed
 
   void copy_from(const MemoryOf& other);
 };
 
 /// How long a list may be.
-enum class Extent { single, vertices, cloth_vertices, cloth_faces, any };
+enum class Extent { single, vertices, cloth_vertices, cloth_faces, stitches, seams, any };
 
 struct MemoryPart {
   const char* name;
@@ -143,6 +165,10 @@ void for_each_part(const Visit& visit, Memory&... m) {
   visit(MemoryPart{"yarns", Extent::cloth_faces, true}, m.yarns...);
   visit(MemoryPart{"yarns_bend", Extent::single}, m.yarns_bend...);
   visit(MemoryPart{"start_gap", Extent::cloth_vertices, true}, m.start_gap...);
+
+  // Open seams go on closing.
+  visit(MemoryPart{"stitches", Extent::stitches}, m.stitches...);
+  visit(MemoryPart{"seams", Extent::seams}, m.seams...);
 
   // The rest are the boxes of the candidate lists, the vertices let go from bodies, and the hands.
   visit(MemoryPart{"trusted", Extent::vertices, true}, m.trusted...);
@@ -180,6 +206,7 @@ std::size_t memory_bytes(const Snapshot& snapshot);
 struct MemoryShape {
   Index vertices = 0, cloth_vertices = 0, cloth_faces = 0;
   Index objects = 0;  ///< cloths and bodies
+  Index stitches = 0, seams = 0;
 };
 
 /// Throws std::invalid_argument, in one line, when the lists are not as long as the scene needs

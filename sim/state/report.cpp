@@ -51,6 +51,9 @@ constexpr ReportColumn kColumns[] = {
     {"energy_balance", &R::energy_balance},
     {"pinched", &R::pinched},
     {"limits", &R::limits},
+    {"open_pairs", &R::open_pairs},
+    {"stuck_pairs", &R::stuck_pairs},
+    {"seam_gap", &R::seam_gap},
 };
 
 }  // namespace

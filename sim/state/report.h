@@ -60,11 +60,16 @@ struct StepReport {
   bool reached(Limit limit) const { return (limits & bit_of(limit)) != 0; }
   /// Cloth vertices that are let go from a body at the end of the step (sim/collision/pinch.h).
   std::int64_t pinched = 0;
+  /// Stitched pairs of open seams that are not closed yet, and those among them that come no
+  /// nearer.
+  std::int64_t open_pairs = 0, stuck_pairs = 0;
+  double seam_gap = 0;  ///< largest distance of a stitched pair [m]
   std::uint64_t state_hash = 0;
 
   bool accepted = true;                  ///< false: the state before the step was kept
   bool finite = true;                    ///< false: NaN or infinity appeared and was thrown away
   std::vector<OffendingPair> offending;  ///< of a refused step, at most 100
+  std::vector<std::string> notes;        ///< what users should read about the step, a line each
   bool no_room = false;  ///< refused, and every pair left is with an obstacle: it leaves no room
 };
 

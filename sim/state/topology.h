@@ -13,6 +13,11 @@ struct SeamDistance {
   Real squared;  ///< [m²]
 };
 
+/// Two vertices that an open seam draws together.
+struct StitchPair {
+  Index a, b;
+};
+
 /// Vertices, edges and faces of cloths come before those of obstacles.
 struct Topology {
   Index cloth_vertices = 0, vertices = 0;
@@ -49,6 +54,11 @@ struct Topology {
 
   /// Own Coulomb coefficient of each object, −1: none (objects); empty where none has one.
   Array<Real> object_friction;
+
+  /// Open seams (sim/mechanics/seam_springs.h); empty where the scene has none.
+  Array<StitchPair> stitches;         ///< (pairs)
+  Array<Index> seam_neighbour_first;  ///< see SeamNeighbours (cloth_vertices + 1)
+  Array<Index> seam_neighbour;
 
   struct Inverse {
     Real m[4];

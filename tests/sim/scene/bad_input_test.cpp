@@ -297,7 +297,7 @@ TEST(BadInput, ScenesWithBadValuesAreRefused) {
       {"thick",
        scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "thickness": 0.01}],)"),
        {"obstacles[0].thickness", "not supported"}},
-      {"y", scene("", R"(, "seams": [])"), {"seams", "not supported"}},
+      {"y", scene("", R"(, "seams": [])"), {"cloths[0].seams", "at least one seam"}},
       {"clip",
        scene(R"("obstacles": [{"mesh": {"sphere": {"radius": 1}}, "animation": "walk.bvh"}],)"),
        {"obstacles[0].animation", "walk.bvh", "a .pc2 or .mdd file"}},

@@ -47,6 +47,8 @@ Snapshot full_snapshot() {
     s.trusted.push_back({{1, 2, 3}, {4, 5, 6.5F + static_cast<float>(k)}});
   s.trusted_complete = true;
 
+  s.stitches = {{number(), number(), 3}, {-1, number(), 0}};
+  s.seams = {{1, 20, 33}};
   s.let_go = {{1, 2, 1}, {2, 2, -1}};
 
   HeldPatch hand;
@@ -61,7 +63,7 @@ Snapshot full_snapshot() {
   return s;
 }
 
-constexpr MemoryShape kFullShape{4, 3, 1, 3};
+constexpr MemoryShape kFullShape{4, 3, 1, 3, 2, 1};
 
 template <class T>
 void put(Bytes& bytes, std::size_t offset, T value) {
@@ -102,6 +104,9 @@ TEST(Memory, SurvivesAsBytesInEveryPart) {
   EXPECT_TRUE(again.yarns_bend);
   EXPECT_EQ(again.start_gap, full.start_gap);
   EXPECT_EQ(again.trusted[3].hi[2], 9.5F);
+  ASSERT_EQ(again.stitches.size(), 2u);
+  EXPECT_EQ(again.stitches[0].mark, full.stitches[0].mark);
+  EXPECT_EQ(again.seams.at(0).next, 33);
   ASSERT_EQ(again.let_go.size(), 2u);
   EXPECT_EQ(again.let_go[1].side, -1);
   ASSERT_EQ(again.hands.size(), 2u);
@@ -178,8 +183,8 @@ TEST(Memory, RefusesOtherFilesAndVersions) {
   other[0] = std::byte{'X'};
   EXPECT_NE(refusal(other).find("ICLOTHME"), std::string::npos);
   other = memory_to_bytes(full_snapshot());
-  put(other, 8, std::uint32_t{2});
-  EXPECT_NE(refusal(other).find("version 2, expected 1"), std::string::npos);
+  put(other, 8, std::uint32_t{1});
+  EXPECT_NE(refusal(other).find("version 1, expected 2"), std::string::npos);
 }
 
 TEST(Memory, CountsTheBytesOfItsLists) {
@@ -219,6 +224,9 @@ TEST(Memory, OfAnotherSceneIsRefusedByPartAndCount) {
             "snapshot of another scene: let_go: side 0, expected 1 or -1");
   EXPECT_NE(misfit([](Snapshot& s) { s.start_gap.resize(1); }), "");
   EXPECT_NE(misfit([](Snapshot& s) { s.trusted.resize(1); }), "");
+  EXPECT_EQ(misfit([](Snapshot& s) { s.stitches.pop_back(); }),
+            "snapshot of another scene: stitches: 1 elements, expected 2");
+  EXPECT_NE(misfit([](Snapshot& s) { s.seams.clear(); }), "");
   EXPECT_NE(misfit([](Snapshot& s) { s.past.motion.clear(); }), "");
   EXPECT_EQ(misfit([](Snapshot& s) { s.past.forget(); }), "");
   EXPECT_EQ(misfit([](Snapshot& s) { s.held.clear(); }), "");
