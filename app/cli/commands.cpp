@@ -171,6 +171,7 @@ void Commands::add_replay() {
   command->add_option("--threads", replay.threads, "threads of the CPU solver")
       ->check(CLI::Range(1, 4096));
   add_device_option(*command, replay.device);
+  add_outside_option(*command, replay.allow_outside);
   command->add_option("--stats", replay.stats_file, "statistics of every step, FILE.csv or .json");
   command->add_flag("--quiet", replay.quiet, "print errors only");
 }
@@ -273,7 +274,7 @@ void complete_command(std::vector<std::string>& words) {
 
 /// Prints all parameters of the scene as the options leave them.
 int dump_config(const SimulationOptions& options) {
-  const auto scene = load_scene(options.scene, scene_overrides(options));
+  const auto scene = load_scene(options.scene, scene_overrides(options), scene_limits(options));
   std::printf("%s\n", dump_parameters(scene->parameters).c_str());
   return 0;
 }

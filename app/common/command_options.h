@@ -35,6 +35,12 @@ inline void add_device_option(CLI::App& command, std::string& device) {
       ->check(check_device);
 }
 
+/// Adds --allow-outside to a command that opens a scene.
+inline void add_outside_option(CLI::App& command, bool& allow_outside) {
+  command.add_flag("--allow-outside", allow_outside,
+                   "let the scene open files outside its folder and the program's assets");
+}
+
 /// Adds the options to a command; values are checked while the command line is read.
 inline void add_simulation_options(CLI::App& command, SimulationOptions& options,
                                    bool scene_required) {
@@ -57,7 +63,8 @@ inline void add_simulation_options(CLI::App& command, SimulationOptions& options
       ->check(check_time)
       ->excludes(steps);
 
-  // Changes of the scene and its parameters.
+  // A scene comes from anyone; changes of it and of its parameters come from the user.
+  add_outside_option(command, options.allow_outside);
   command.add_flag("--repair-start", options.repair_start,
                    "separate faces that intersect a little at the start");
   command.add_option("--preset", options.preset,

@@ -46,6 +46,12 @@ std::vector<std::string> scene_overrides(const SimulationOptions& options) {
   return overrides;
 }
 
+SceneLimits scene_limits(const SimulationOptions& options) {
+  SceneLimits limits;
+  limits.allow_outside = options.allow_outside;
+  return limits;
+}
+
 Build choose_build(const SimulationOptions& options) {
   // Double precision is there on the CPU only.
   const bool cuda = options.device.starts_with("cuda");
@@ -80,6 +86,7 @@ std::string command_arguments(const SimulationOptions& options, Build build) {
   std::string text = quoted(options.scene);
   text += build == Build::cuda32 ? " --device cuda" : " --device cpu";
   if (build == Build::cpu64) text += " --precision f64";
+  if (options.allow_outside) text += " --allow-outside";
   for (const std::string& override : scene_overrides(options)) text += " --set " + quoted(override);
   return text;
 }

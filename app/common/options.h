@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
 
 namespace icloth {
@@ -17,6 +18,7 @@ struct SimulationOptions {
   double time = -1;               ///< [s]; -1 (and steps -1): the scene's duration
   std::string preset;             ///< name of a preset, sim/scene/presets.h; empty: none
   bool repair_start = false;
+  bool allow_outside = false;          ///< the scene may name files outside its folder
   std::vector<std::string> overrides;  ///< --set arguments, "KEY=VALUE"
   bool dump_config = false;            ///< print all parameters and stop
   bool quiet = false;
@@ -24,6 +26,9 @@ struct SimulationOptions {
 
 /// The changes of the scene by the options, for load_scene: the preset first, then each --set.
 std::vector<std::string> scene_overrides(const SimulationOptions& options);
+
+/// What the scene may ask for.
+SceneLimits scene_limits(const SimulationOptions& options);
 
 /// The build that --device and --precision ask for. `cuda` and an empty device mean the first CUDA
 /// device that can be used, `cuda:N` that one; it becomes the one of Build::cuda32

@@ -7,6 +7,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "sim/files/error.h"
+#include "sim/files/file_io.h"
+#include "sim/files/text.h"
+
 namespace icloth {
 
 namespace fs = std::filesystem;
@@ -29,6 +33,16 @@ std::string find_asset(const std::string& name, const std::string& folder) {
   if (fs::exists(beside, error)) return beside.lexically_normal().string();
   const fs::path shipped = fs::path(assets_folder()) / name;
   return (fs::exists(shipped, error) ? shipped : beside).lexically_normal().string();
+}
+
+void require_in_scope(const std::string& path, const std::string& name, const std::string& where,
+                      const FileScope& scope) {
+  if (scope.anywhere) return;
+  if (lies_below(path, scope.folder) || lies_below(path, assets_folder())) return;
+  throw InputError(where + ": value " + in_quotes(name) +
+                   ", expected a file below the scene's folder (" +
+                   shown_path(scope.folder.empty() ? "." : scope.folder) +
+                   ") or the program's assets; --allow-outside opens files anywhere");
 }
 
 std::string asset_names(const std::string& kind) {

@@ -149,7 +149,7 @@ void merge_coinciding(const std::vector<Index>& number, TriangleMesh& body) {
 class FilesOfFolder : public Assimp::DefaultIOSystem {
  public:
   explicit FilesOfFolder(const std::string& body)
-      : folder_(std::filesystem::weakly_canonical(body).parent_path()), body_(body) {}
+      : folder_(std::filesystem::path(body).parent_path().string()), body_(body) {}
 
   bool Exists(const char* name) const override { return may_open(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
@@ -160,13 +160,10 @@ class FilesOfFolder : public Assimp::DefaultIOSystem {
   bool may_open(const char* name) const {
     std::error_code error;
     if (!std::filesystem::is_regular_file(name, error)) return false;
-    if (name == body_) return true;
-    const auto inside = std::filesystem::canonical(name, error).lexically_relative(folder_);
-    return !error && !inside.empty() && *inside.begin() != "..";
+    return name == body_ || lies_below(name, folder_);
   }
 
-  std::filesystem::path folder_;
-  std::string body_;
+  std::string folder_, body_;
 };
 
 std::size_t morphs_of(const aiScene& scene) {

@@ -54,6 +54,16 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   return contents;
 }
 
+bool lies_below(const std::string& path, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error, no_folder;
+  const fs::path place = fs::weakly_canonical(path, error);
+  const fs::path root = fs::weakly_canonical(fs::path(folder) / ".", no_folder);
+  if (error || no_folder || path.find('\0') != std::string::npos) return false;
+  const fs::path below = place.lexically_relative(root);
+  return !below.empty() && *below.begin() != "..";
+}
+
 std::string lower_extension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::ranges::transform(extension, extension.begin(),

@@ -15,6 +15,11 @@ std::uint64_t regular_file_size(const std::string& path);
 /// larger than `max_bytes`.
 std::string read_file(const std::string& path, std::uint64_t max_bytes = std::uint64_t{1} << 34);
 
+/// Whether a path lies in a folder or below it, after all links of both have been followed; empty
+/// is the current folder. False where links go round, and for a path with a zero byte, at which the
+/// system would end it. Nothing is opened.
+bool lies_below(const std::string& path, const std::string& folder);
+
 /// Extension with its dot, in lower case: ".obj"; empty where there is none.
 std::string lower_extension(const std::string& path);
 

@@ -90,10 +90,12 @@ class GltfChecker {
   std::string buffer_path(const JsonValue& uri) const {
     const std::string& name = uri.text();
     const fs::path relative = fs::path(name).lexically_normal();
-    if (name.find('\0') != std::string::npos || relative.empty() || relative.is_absolute() ||
-        *relative.begin() == "..")
+    const fs::path folder = fs::path(path_).parent_path();
+    const std::string path = (folder / relative).string();
+    if (relative.empty() || relative.is_absolute() || *relative.begin() == ".." ||
+        !lies_below(path, folder.string()))
       uri.refuse("the name of a file in the folder of the body or below it");
-    return (fs::path(path_).parent_path() / relative).string();
+    return path;
   }
 
   void check_view(const JsonValue& view) {

@@ -52,10 +52,10 @@ std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string
 
 std::shared_ptr<const Scene> open_scene(const std::string& argument,
                                         std::span<const std::string> overrides, SceneOrigin* origin,
-                                        const DressingWatch& watch) {
+                                        const DressingWatch& watch, const SceneLimits& limits) {
   SceneOrigin own;
   if (!origin) origin = &own;
-  std::shared_ptr<const Scene> loaded = load_scene(argument, overrides, {}, origin);
+  std::shared_ptr<const Scene> loaded = load_scene(argument, overrides, limits, origin);
   if (loaded->garments.empty()) return loaded;
 
   // What was dressed before with the same pattern, body, fabric and parameters is taken as it was.

@@ -30,6 +30,7 @@ std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string
 std::shared_ptr<const Scene> open_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         SceneOrigin* origin = nullptr,
-                                        const DressingWatch& watch = {});
+                                        const DressingWatch& watch = {},
+                                        const SceneLimits& limits = {});
 
 }  // namespace icloth

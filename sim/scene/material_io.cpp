@@ -16,7 +16,14 @@ namespace {
 /// Materials that name each other as their base end here.
 constexpr int kMaxBases = 8;
 
-Material load(const std::string& name, const std::string& folder, int depth);
+/// A material on its way from its file.
+struct Source {
+  std::string folder;  ///< names of files are looked for here
+  FileScope scope;
+  int depth = 0;  ///< materials that are based on this one, each on the next
+};
+
+Material load(const std::string& name, const std::string& where, const Source& source);
 
 template <std::size_t N>
 void read_row(const JsonValue& value, double unit, std::array<double, N>& row) {
@@ -102,14 +109,14 @@ void check_orthotropic(const JsonValue& where, const Material& material) {
         "0.95 sqrt(c11 c22)");
 }
 
-Material parse(const nlohmann::json& json, const std::string& where, const std::string& folder,
-               int depth) {
+Material parse(const nlohmann::json& json, const std::string& where, const Source& source) {
   JsonObject object(JsonValue(json, where));
   Material material;
   const bool has_base = object.has("base");
   if (has_base) {
-    if (depth >= kMaxBases) object["base"].refuse("a material whose bases come to an end");
-    material = load(object["base"].text(), folder, depth + 1);
+    const JsonValue base = object["base"];
+    if (source.depth >= kMaxBases) base.refuse("a material whose bases come to an end");
+    material = load(base.text(), base.where(), {source.folder, source.scope, source.depth + 1});
   }
   material.name = object.text("name", material.name);
   object.text("description", "");
@@ -146,26 +153,38 @@ Material parse(const nlohmann::json& json, const std::string& where, const std::
   return material;
 }
 
-Material load(const std::string& name, const std::string& folder, int depth) {
-  const bool is_file = std::filesystem::path(name).extension() == ".json";
-  const std::string path =
-      is_file ? find_asset(name, folder) : assets_folder() + "/materials/" + name + ".json";
+std::string material_path(const std::string& name, const std::string& folder) {
+  if (std::filesystem::path(name).extension() == ".json") return find_asset(name, folder);
+  const std::string path = assets_folder() + "/materials/" + name + ".json";
   std::error_code error;
-  if (!is_file && !std::filesystem::exists(path, error))
+  if (name.find('/') != std::string::npos || !std::filesystem::exists(path, error))
     throw InputError("material " + in_quotes(name) +
                      " is not known, expected a .json file or one of:" + asset_names("materials"));
-  return parse(read_json(path), shown_path(path), std::filesystem::path(path).parent_path(), depth);
+  return path;
+}
+
+Material load(const std::string& name, const std::string& where, const Source& source) {
+  const std::string path = material_path(name, source.folder);
+  require_in_scope(path, name, where, source.scope);
+  return parse(read_json(path), shown_path(path),
+               {std::filesystem::path(path).parent_path(), source.scope, source.depth});
 }
 
 }  // namespace
 
 Material parse_material(const nlohmann::json& json, const std::string& where,
-                        const std::string& folder) {
-  return parse(json, where, folder, 0);
+                        const FileScope& scope) {
+  return parse(json, where, {scope.folder, scope});
+}
+
+Material load_material(const std::string& name, const std::string& where, const FileScope& scope) {
+  return load(name, where, {scope.folder, scope});
 }
 
 Material load_material(const std::string& name, const std::string& folder) {
-  return load(name, folder, 0);
+  const std::string path = material_path(name, folder);
+  const std::string own = std::filesystem::path(path).parent_path();
+  return parse(read_json(path), shown_path(path), {own, {own}});
 }
 
 }  // namespace icloth

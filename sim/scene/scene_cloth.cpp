@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/files/assets.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/polygon.h"
 #include "sim/files/text.h"
@@ -102,12 +101,12 @@ void judge_uv(const SceneFolder& folder, Cloth& cloth) {
 /// Reads the mesh of a cloth and its rest shape, a second mesh of the same topology or its texture
 /// coordinates.
 void read_shapes(JsonObject& object, const SceneFolder& folder, Cloth& cloth) {
-  MeshFile file = read_mesh(find_asset(object["mesh"].text(), folder.path));
+  MeshFile file = read_mesh(folder.find(object["mesh"]));
 
   // The material coordinates of the rest shape win over those of the mesh.
   const bool in_uv = rests_in_uv(object);
   if (object.has("rest") && !in_uv) {
-    MeshFile rest = read_mesh(find_asset(object["rest"].text(), folder.path));
+    MeshFile rest = read_mesh(folder.find(object["rest"]));
     if (!same_faces(file, rest))
       object["rest"].refuse("a mesh with the same vertices and faces as \"mesh\"");
     cut_like(rest, file);  // polygons are cut where they are not bent
@@ -298,9 +297,10 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   // Pins follow the transform, since their boxes are given in the coordinates of the scene.
   if (object.has("pins")) parse_pins(object["pins"], loaded);
   const JsonValue material = object["material"];
-  loaded.cloth.material = material.json().is_object()
-                              ? parse_material(material.json(), material.where(), folder.path)
-                              : load_material(object.text("material", "default"), folder.path);
+  loaded.cloth.material =
+      material.json().is_object()
+          ? parse_material(material.json(), material.where(), folder.files)
+          : load_material(object.text("material", "default"), material.where(), folder.files);
 
   // The folds of the rest shape are its rest angles unless the scene wants them flat.
   if (object.has("rest_angles")) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/files/assets.h"
 #include "sim/files/text.h"
 #include "sim/scene/scene_json.h"
 #include "sim/scene/transforms.h"
@@ -51,8 +50,7 @@ void sew_cloth(JsonObject& object, const SceneFolder& folder, LoadedCloth& loade
     triangles = static_cast<double>(object["triangles"].integer(2, most));
   const double scaled = std::clamp<double>(std::round(triangles * folder.triangle_scale), 2, most);
   std::vector<std::string> notes;
-  Garment garment = read_garment(find_asset(object["pattern"].text(), folder.path),
-                                 static_cast<Index>(scaled), notes);
+  Garment garment = read_garment(folder.find(object["pattern"]), static_cast<Index>(scaled), notes);
   if (object.has("dress")) garment.plan = parse_dress(object["dress"]);
   if (object.has("on")) garment.body = object["on"].text();
   if (object.has("layer")) garment.layer = static_cast<Index>(object["layer"].integer(0, 100));

@@ -171,7 +171,8 @@ FileScene scene_of_json(const std::string& argument, double triangles, const Sce
                         SceneOrigin& origin) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
-  SceneFolder folder{fs::path(path).parent_path().string(), 1, limits, nullptr};
+  SceneFolder folder{
+      {fs::path(path).parent_path().string(), limits.allow_outside}, 1, limits, nullptr};
 
   // The number of triangles is that of all grids and patterns together, which keep their
   // proportions.

@@ -11,10 +11,11 @@
 
 namespace icloth {
 
-/// The largest meshes that a scene may ask for: a small file must not take all memory.
+/// What a scene may ask for: a small file must not take all memory, nor read what is not its own.
 struct SceneLimits {
   Index triangles = 20'000'000;      ///< of all cloths and obstacles together
   Index body_triangles = 8'000'000;  ///< of one sphere, capsule, box, plane or funnel
+  bool allow_outside = false;        ///< files below other folders than its own and assets_folder()
 };
 
 /// How the simulated vertices relate to those of the scene's files, and notes about the files.

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "sim/files/assets.h"
 #include "sim/files/json_reader.h"
 #include "sim/scene/scene_io.h"
 #include "sim/scene/shapes.h"
@@ -20,7 +21,7 @@ struct LoadedCloth {
 };
 
 struct SceneFolder {
-  std::string path;           ///< files are looked for here, then in the assets folder
+  FileScope files;            ///< they are looked for in its folder, then in the assets folder
   double triangle_scale = 1;  ///< factor on the triangles of every grid
   SceneLimits limits;
   /// Lines that the user should read go here; null: they are dropped.
@@ -28,6 +29,13 @@ struct SceneFolder {
 
   void note(std::string line) const {
     if (notes) notes->push_back(std::move(line));
+  }
+
+  /// Path of a file that the scene names. Throws InputError where the scene may not open it.
+  std::string find(const JsonValue& name) const {
+    std::string path = find_asset(name.text(), files.folder);
+    require_in_scope(path, name.text(), name.where(), files);
+    return path;
   }
 };
 

@@ -1,6 +1,5 @@
 // Obstacles of a scene file.
 #include "sim/bodies/offset.h"
-#include "sim/files/assets.h"
 #include "sim/files/body_io.h"
 #include "sim/files/box.h"
 #include "sim/files/text.h"
@@ -88,7 +87,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   Body body;
   FileSpace space;
   if (is_file) {
-    body = read_body(find_asset(mesh.text(), folder.path));
+    body = read_body(folder.find(mesh));
     space = parse_space(object);
   } else {
     body.mesh = parse_body_shape(mesh, folder.limits.body_triangles);

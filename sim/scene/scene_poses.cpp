@@ -5,7 +5,6 @@
 
 #include "sim/bodies/cached_poses.h"
 #include "sim/bodies/offset.h"
-#include "sim/files/assets.h"
 #include "sim/files/box.h"
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
@@ -166,7 +165,7 @@ void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Plac
   const std::string& file = object["animation"].text();
   const std::string name = "obstacle " + in_quotes(obstacle.name);
   const auto vertices = static_cast<Index>(mesh.positions.size());
-  PointCache cache = read_point_cache(find_asset(file, folder.path), vertices);
+  PointCache cache = read_point_cache(folder.find(object["animation"]), vertices);
   for (const std::string& unused : cache.unused)
     folder.note(name + ": " + shown_path(file) + " has " + unused);
   const double file_rate = cache.frame_rate > 0 ? cache.frame_rate : kFrameRate;

@@ -14,7 +14,7 @@ std::string read_material(std::string_view bytes) {
   if (leaves_folder(bytes)) return kLeavesFolder;
   write_scratch("material.json", bytes);
   return refusal([] {
-    const Material material = load_material("material.json", scratch_folder());
+    const Material material = load_material("material.json", "material", {scratch_folder()});
     require(std::isfinite(material.density + material.damping), "finite numbers");
     require(material.density > 0 && material.damping >= 0, "density and damping in their ranges");
   });

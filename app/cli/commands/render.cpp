@@ -4,8 +4,6 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "app/common/camera_json.h"
 #include "app/common/dressing_progress.h"
@@ -17,6 +15,7 @@
 #include "sim/cuda_devices.h"
 #include "sim/files/box.h"
 #include "sim/files/error.h"
+#include "sim/files/file_io.h"
 #include "sim/files/text.h"
 #include "sim/garment/open_scene.h"
 #include "sim/scene/intersections.h"
@@ -79,13 +78,8 @@ void check_out(const std::string& out) {
 
 /// Reads a camera from a JSON file.
 Camera camera_from_file(const std::string& path) {
-  std::ifstream file(path);
-  if (!file)
-    throw InputError("--camera " + shown_path(path) + ": cannot be read, expected a JSON file");
-  std::ostringstream text;
-  text << file.rdbuf();
-
-  const auto pose = camera_from_json(text.str());
+  constexpr std::uint64_t kMostBytes = 1 << 20;
+  const auto pose = camera_from_json(read_file(path, kMostBytes));
   if (!pose) {
     throw InputError("--camera " + shown_path(path) +
                      ": no camera, expected an object with 'eye' and 'target' "
@@ -160,8 +154,8 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene =
-      open_scene(common.scene, scene_overrides(common), &job.origin, show_dressing(common.quiet));
+  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin,
+                         show_dressing(common.quiet), scene_limits(common));
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);

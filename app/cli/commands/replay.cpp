@@ -14,8 +14,10 @@ int run_replay(const ReplayOptions& options) {
   // The recording says which scene to run, on which build.
   const Recording recording = load_recording(options.recording);
   HeadlessJob job;
-  job.scene =
-      open_scene(recording.scene, recording.overrides, &job.origin, show_dressing(options.quiet));
+  SceneLimits limits;
+  limits.allow_outside = options.allow_outside;
+  job.scene = open_scene(recording.scene, recording.overrides, &job.origin,
+                         show_dressing(options.quiet), limits);
   check_recording(recording, *job.scene, options.recording);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})

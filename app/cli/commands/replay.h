@@ -7,9 +7,10 @@ namespace icloth {
 
 struct ReplayOptions {
   std::string recording;
-  std::string stats_file;  ///< .csv or .json; empty: none
-  std::string device;      ///< cpu, cuda or cuda:N; empty: the build that was recorded
-  int threads = 0;         ///< of the CPU builds; 0: all
+  std::string stats_file;      ///< .csv or .json; empty: none
+  std::string device;          ///< cpu, cuda or cuda:N; empty: the build that was recorded
+  int threads = 0;             ///< of the CPU builds; 0: all
+  bool allow_outside = false;  ///< the scene may name files outside its folder
   bool quiet = false;
 };
 

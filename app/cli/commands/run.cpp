@@ -57,8 +57,8 @@ void print_profile(const RunStatistics& statistics) {
 HeadlessJob make_job(const RunOptions& options, Recording& input) {
   const SimulationOptions& common = options.simulation;
   HeadlessJob job;
-  job.scene =
-      open_scene(common.scene, scene_overrides(common), &job.origin, show_dressing(common.quiet));
+  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin,
+                         show_dressing(common.quiet), scene_limits(common));
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     check_recording(input, *job.scene, options.input_file);

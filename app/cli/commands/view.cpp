@@ -19,8 +19,9 @@ int run_view(const ViewOptions& options) {
 
   // The notes go to the terminal that the window was opened from, and into a panel.
   SceneOrigin origin;
-  const std::shared_ptr<const Scene> scene = open_scene(
-      simulation.scene, scene_overrides(simulation), &origin, show_dressing(simulation.quiet));
+  const std::shared_ptr<const Scene> scene =
+      open_scene(simulation.scene, scene_overrides(simulation), &origin,
+                 show_dressing(simulation.quiet), scene_limits(simulation));
   print_notes(origin);
   Viewer viewer(options, build, scene, std::move(origin));
   viewer.run();

@@ -133,6 +133,19 @@ TEST_F(Cli, BadUsageIsRefusedInOneLine) {
   expect_bad_input("bench --threads x", "--threads");
 }
 
+TEST_F(Cli, AScenesFilesOutsideItsFolderNeedLeave) {
+  fs::create_directory(folder_ / "sub");
+  write("t.obj", kTwoTriangles);
+  write("sub/a.json", R"({"cloths": [{"mesh": "../t.obj", "pins": [0]}]})");
+  expect_bad_input("run sub/a.json --steps 1", "sub/a.json: cloths[0].mesh: value '../t.obj'");
+  expect_bad_input("render sub/a.json --steps 1", "--allow-outside");
+  expect_bad_input("run sub/a.json --dump-config", "--allow-outside");
+  EXPECT_EQ(icloth("run sub/a.json --steps 1 --allow-outside --record r.json").code, 0);
+  expect_bad_input("replay r.json", "--allow-outside");
+  EXPECT_EQ(icloth("replay r.json --allow-outside").code, 0);
+  EXPECT_EQ(icloth("run t.obj --steps 1").code, 0);
+}
+
 TEST_F(Cli, BadParametersAreRefusedInOneLine) {
   expect_bad_input("run scarf --set time_step=0", "step.time_step");
   expect_bad_input("run scarf --set time_step", "time_step");
