@@ -47,7 +47,7 @@ inline void add_simulation_options(CLI::App& command, SimulationOptions& options
   // A command names a scene and a device.
   auto* scene = command.add_option(
       "SCENE", options.scene,
-      "built-in name (scarf sphere twisting funnel drape flag), scene JSON or mesh "
+      "built-in name (scarf dressed sphere twisting funnel drape flag), scene JSON or mesh "
       "file");
   if (scene_required) scene->required();
   add_device_option(command, options.device);
