@@ -7,8 +7,6 @@
 
 #include "kernels/index.h"
 #include "kernels/parallel/parallel_for.h"
-#include "sim/scene/box_tree.h"
-#include "sim/scene/exact_triangles.h"
 
 #if defined(ICLOTH_HAS_CGAL)
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -103,40 +101,73 @@ bool share_vertex(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-}  // namespace
+std::vector<FaceCorners> corners_of(std::span<const Vec3d> positions,
+                                    std::span<const Triangle> faces) {
+  std::vector<FaceCorners> corners;
+  for (const Triangle& t : faces)
+    corners.push_back({positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]});
+  return corners;
+}
 
-std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
-                                                  std::span<const Triangle> faces,
-                                                  std::span<const int> group) {
-  std::vector<FaceCorners> corners(faces.size());
-  std::vector<Box> boxes(faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const Triangle& t = faces[f];
-    corners[f] = {positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]};
-    boxes[f] = box_of(corners[f]);
-  }
-  const BoxTree tree(boxes);
-  const auto is_obstacle = [&](Index f) { return !group.empty() && group[at(f)] < 0; };
+std::vector<Box> boxes_of(std::span<const FaceCorners> corners) {
+  std::vector<Box> boxes;
+  for (const FaceCorners& face : corners) boxes.push_back(box_of(face));
+  return boxes;
+}
 
+/// Runs find(a, add) for all faces at once, which calls add(b) for those that a meets.
+template <class Find>
+std::vector<IntersectingFaces> collect_pairs(std::size_t faces, const Find& find) {
   std::vector<IntersectingFaces> found;
   std::mutex lock;  // the order of arrival is undone by the sort below
-  const auto test_face = [&](Index a) {
-    if (is_obstacle(a)) return;
-    tree.visit(boxes[at(a)], [&](Index b) {
-      if (b <= a && !is_obstacle(b)) return;  // found from the other side
-      if (share_vertex(faces[at(a)], faces[at(b)])) return;
-      if (!intersect(corners[at(a)], corners[at(b)])) return;
-      const std::lock_guard guard(lock);
-      found.push_back({std::min(a, b), std::max(a, b)});
-    });
-  };
-  parallel_for(static_cast<Index>(faces.size()), 64, 64, [&](Index first, Index last) {
-    for (Index a = first; a < last; ++a) test_face(a);
+  parallel_for(static_cast<Index>(faces), 64, 64, [&](Index first, Index last) {
+    for (Index a = first; a < last; ++a)
+      find(a, [&](Index b) {
+        const std::lock_guard guard(lock);
+        found.push_back({std::min(a, b), std::max(a, b)});
+      });
   });
   std::ranges::sort(found, [](const IntersectingFaces& s, const IntersectingFaces& t) {
     return s.a != t.a ? s.a < t.a : s.b < t.b;
   });
   return found;
+}
+
+}  // namespace
+
+FaceTree::FaceTree(std::span<const Vec3d> positions, std::span<const Triangle> faces)
+    : corners_(corners_of(positions, faces)), boxes_(boxes_of(corners_)), tree_(boxes_) {}
+
+std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
+                                                  std::span<const Triangle> faces,
+                                                  std::span<const int> group) {
+  const FaceTree tree(positions, faces);
+  const auto is_obstacle = [&](Index f) { return !group.empty() && group[at(f)] < 0; };
+  return collect_pairs(faces.size(), [&](Index a, const auto& add) {
+    if (is_obstacle(a)) return;
+    tree.visit(tree.box(a), [&](Index b) {
+      if (b <= a && !is_obstacle(b)) return;  // found from the other side
+      if (share_vertex(faces[at(a)], faces[at(b)])) return;
+      if (intersect(tree.corners(a), tree.corners(b))) add(b);
+    });
+  });
+}
+
+std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
+                                                  std::span<const Triangle> faces,
+                                                  const FaceTree& fixed) {
+  const FaceTree tree(positions, faces);
+  const auto own = static_cast<Index>(faces.size());
+  return collect_pairs(faces.size(), [&](Index a, const auto& add) {
+    tree.visit(tree.box(a), [&](Index b) {
+      if (b > a && !share_vertex(faces[at(a)], faces[at(b)]) &&
+          intersect(tree.corners(a), tree.corners(b)))
+        add(b);
+    });
+    fixed.visit(tree.box(a), [&](Index b) {
+      if (intersect(tree.corners(a), fixed.corners(b))) add(own + b);
+    });
+  });
 }
 
 StartConflicts find_start_conflicts(const Scene& scene, bool single_precision) {

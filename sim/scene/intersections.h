@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "sim/files/mesh.h"
+#include "sim/scene/box_tree.h"
+#include "sim/scene/exact_triangles.h"
 #include "sim/scene/scene.h"
 #include "sim/scene/touching.h"
 
@@ -20,6 +22,37 @@ struct IntersectingFaces {
 std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
                                                   std::span<const Triangle> faces,
                                                   std::span<const int> group);
+
+/// Faces with their boxes in a tree, for tests that are repeated while other faces move.
+class FaceTree {
+ public:
+  FaceTree(std::span<const Vec3d> positions, std::span<const Triangle> faces);
+  FaceTree(const FaceTree&) = delete;  // the tree refers to the boxes
+  FaceTree& operator=(const FaceTree&) = delete;
+
+  std::size_t size() const { return corners_.size(); }
+  const FaceCorners& corners(Index face) const { return corners_[static_cast<std::size_t>(face)]; }
+  const Box& box(Index face) const { return boxes_[static_cast<std::size_t>(face)]; }
+
+  /// Calls visit(i) for every face i whose box overlaps `query`.
+  template <class Visit>
+  void visit(const Box& query, const Visit& visit_face) const {
+    tree_.visit(query, visit_face);
+  }
+
+ private:
+  std::vector<FaceCorners> corners_;
+  std::vector<Box> boxes_;
+  BoxTree tree_;
+};
+
+/// Every pair of faces that touches or crosses and shares no vertex, sorted, where the first is one
+/// of `faces`. The faces of `fixed` have the numbers after those and are not tested among
+/// themselves. It gives what the function above gives for the two soups in one, in less time where
+/// `fixed` is tested again and again.
+std::vector<IntersectingFaces> find_intersections(std::span<const Vec3d> positions,
+                                                  std::span<const Triangle> faces,
+                                                  const FaceTree& fixed);
 
 /// Faces that touch or cross in the start state of a scene, which cannot be simulated then. Numbers
 /// count cloths in scene order, then obstacles.

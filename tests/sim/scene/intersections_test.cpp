@@ -117,6 +117,30 @@ TEST(Intersections, NeighboursAndObstaclesAreLeftOut) {
   EXPECT_TRUE(find_intersections({}, {}, {}).empty());
 }
 
+TEST(Intersections, AmongFixedFacesAreThoseOfTheWholeSoup) {
+  // The first 60 faces move; the other 60 are obstacles of one soup or a tree of their own.
+  for (unsigned seed : {11u, 12u, 13u}) {
+    Soup moving = lattice_soup(seed, 60, 6), fixed = lattice_soup(seed + 100, 60, 6);
+    Soup whole = moving;
+    for (const Triangle& t : fixed.faces)
+      whole.add(fixed.positions[static_cast<std::size_t>(t[0])],
+                fixed.positions[static_cast<std::size_t>(t[1])],
+                fixed.positions[static_cast<std::size_t>(t[2])]);
+    std::vector<int> group(60, 0);
+    group.resize(120, -1);
+
+    const auto expected = whole.find(group);
+    const FaceTree tree(fixed.positions, fixed.faces);
+    const auto found = find_intersections(moving.positions, moving.faces, tree);
+    ASSERT_EQ(found.size(), expected.size());
+    EXPECT_GT(found.size(), 100u);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].a, expected[k].a);
+      EXPECT_EQ(found[k].b, expected[k].b);
+    }
+  }
+}
+
 TEST(Intersections, StartStateCountsClothsThenObstacles) {
   Scene scene;
   Cloth cloth;
