@@ -6,7 +6,7 @@
 
 #include "kernels/index.h"
 #include "sim/bodies/cached_poses.h"
-#include "sim/bodies/offset.h"
+#include "sim/bodies/contract.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
 #include "sim/garment/face_strain.h"
@@ -17,21 +17,24 @@ namespace {
 constexpr double kTimeStep = 0.005;     // [s]
 constexpr int kStepsBetweenRests = 20;  // then the velocities are halved
 constexpr int kStepsBetweenLooks = 10;  // at the strain
+constexpr double kClosingBending = 30;  // times as stiff, so that no hem flips or rolls up
 constexpr double kClosedStrain = 0.05;  // of a garment whose seams are drawn together
 constexpr int kStallSteps = 50;         // it is as closed as it gets when in so many steps …
 constexpr double kStallChange = 0.01;   // … the strain changed by no more than this share
 constexpr int kMostRefusals = 5;        // one after the other
-constexpr double kGrowTime = 1;         // of bodies that start thinner [s]
+constexpr double kGrowTime = 1;         // of bodies that start contracted [s]
 constexpr double kHoldStiffness = 1;    // of a held vertex [N/m]
 
-/// Without weight and wind, and with the integrator that takes most energy away.
+/// Without weight and wind, stiffer in bending, and with the integrator that takes most energy
+/// away.
 Parameters dressing_parameters(const Parameters& own) {
   Parameters p = own;
   p.step.time_step = kTimeStep;
   p.implicit.integrator = Integrator::backward_euler;
-  p.gravity = {};
+  p.gravity = {.x = 0, .y = 0, .z = 0};
   p.wind = {.x = 0, .y = 0, .z = 0, .air_density = 0, .air_drag = 0};
   p.material.strain_limit = 0;
+  p.material.bend_scale *= kClosingBending;
   return p;
 }
 
@@ -43,11 +46,11 @@ struct DressingRoom {
 };
 
 /// The body grows to its size within kGrowTime.
-void let_grow(Obstacle& body, double shrink) {
-  std::vector<Vec3d> thin = body.mesh.positions;
-  offset_along_normals(thin, body.mesh.faces, -shrink);
+void let_grow(Obstacle& body, double contraction) {
+  std::vector<Vec3d> slender = body.mesh.positions;
+  contract(slender, body.mesh.faces, contraction);
   std::vector<std::vector<Vec3f>> frames;
-  for (const std::vector<Vec3d>* positions : {&thin, &body.mesh.positions}) {
+  for (const std::vector<Vec3d>* positions : {&slender, &body.mesh.positions}) {
     std::vector<Vec3f>& frame = frames.emplace_back();
     for (Vec3d p : *positions) frame.push_back(convert<float>(p));
   }
@@ -57,7 +60,7 @@ void let_grow(Obstacle& body, double shrink) {
 /// The bodies as they stand at time 0, the cloths that are no garments, held where they are, the
 /// garments that are on already, and the next one.
 DressingRoom make_room(const Scene& scene, std::span<const std::size_t> on, std::size_t next,
-                       double shrink) {
+                       double contraction) {
   DressingRoom room{std::make_shared<Scene>(), {}, 0};
   room.scene->name = scene.name;
   room.scene->parameters = dressing_parameters(scene.parameters);
@@ -67,7 +70,7 @@ DressingRoom make_room(const Scene& scene, std::span<const std::size_t> on, std:
     still.friction = obstacle.friction;
     still.mesh = obstacle.mesh;
     obstacle.pose(0, still.mesh.positions);
-    if (shrink > 0) let_grow(still, shrink);
+    if (contraction > 0) let_grow(still, contraction);
     room.scene->obstacles.push_back(std::move(still));
   }
 
@@ -189,11 +192,12 @@ void scale_velocities(Simulator& simulator, double factor) {
 /// One garment that is being put on.
 class Dressing {
  public:
-  Dressing(const Scene& scene, std::span<const std::size_t> on, std::size_t next, double shrink,
-           const DressingWatch& watch)
+  Dressing(const Scene& scene, std::span<const std::size_t> on, std::size_t next,
+           double contraction, const DressingWatch& watch)
       : garment_(scene.garments[next]),
-        room_(make_room(scene, on, next, shrink)),
-        least_steps_(shrink > 0 ? static_cast<int>(std::lround(kGrowTime / kTimeStep)) + 1 : 0),
+        room_(make_room(scene, on, next, contraction)),
+        least_steps_(contraction > 0 ? static_cast<int>(std::lround(kGrowTime / kTimeStep)) + 1
+                                     : 0),
         world_(make_world(*room_.scene)),
         gauge_(world_, room_, garment_),
         holds_(world_, room_, garment_),
@@ -247,6 +251,7 @@ class Dressing {
   void settle() {
     Parameters parameters = simulator_->parameters();
     parameters.gravity = gravity_;
+    parameters.material.bend_scale /= kClosingBending;
     simulator_->set_parameters(parameters);
     const int most = static_cast<int>(std::lround(garment_.plan.settling / kTimeStep));
     std::vector<InputEvent> events = holds_.events(InputEvent::Kind::release, *simulator_);
@@ -303,8 +308,8 @@ std::vector<std::size_t> dressing_order(const Scene& scene) {
 }
 
 DressingReport dress_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on,
-                             double shrink, const DressingWatch& watch) {
-  Dressing dressing(scene, on, garment, shrink, watch);
+                             double contraction, const DressingWatch& watch) {
+  Dressing dressing(scene, on, garment, contraction, watch);
   DressingReport report = dressing.run();
   dressing.write(scene);
   return report;

@@ -43,10 +43,11 @@ std::vector<std::size_t> dressing_order(const Scene& scene);
 
 /// Puts one garment on, among the garments `on`, numbers in scene.garments, that are on already. It
 /// is done on the processor in single precision, so that every device starts from the same state.
-/// Bodies stand where they are at time 0, and grow to that from a surface thinner by `shrink` [m];
-/// cloths that are no garments stay where they are. What hangs on the body then becomes the start
-/// of the garments in the scene. Throws InputError where the garment cannot be put on.
+/// Bodies stand where they are at time 0; they grow to that from a slender copy, contracted over
+/// `contraction` [m]. Cloths that are no garments stay where they are. What hangs on the body then
+/// becomes the start of the garments in the scene. Throws InputError where the garment cannot be
+/// put on.
 DressingReport dress_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on,
-                             double shrink, const DressingWatch& watch = {});
+                             double contraction, const DressingWatch& watch = {});
 
 }  // namespace icloth

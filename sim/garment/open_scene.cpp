@@ -21,9 +21,13 @@ void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
     notes.push_back(cloth + ": " + first_items(arrangement.moved, kMostNamed) +
                     "; as the pattern has them, " + std::to_string(arrangement.pairs_before) +
                     " pairs of faces intersect");
-  if (arrangement.shrink > 0 && arrangement.pairs_left == 0)
-    notes.push_back(cloth + ": bodies start " + rounded_text(1000 * arrangement.shrink) +
-                    " mm thinner while it is put on");
+  if (arrangement.contraction > 0 && arrangement.pairs_left == 0)
+    notes.push_back(cloth + ": bodies start contracted over " +
+                    rounded_text(1000 * arrangement.contraction) +
+                    " mm and grow back while it is put on");
+  if (arrangement.repaired > 0)
+    notes.push_back(cloth + ": " + std::to_string(arrangement.repaired) +
+                    " of its vertices are moved to part faces that intersect at the start");
   if (arrangement.pairs_left > 0)
     notes.push_back(cloth + " cannot be put on: " + first_items(arrangement.left, kMostNamed) +
                     " intersect at the start");
@@ -44,7 +48,7 @@ std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string
     if (report.arrangement.pairs_left > 0) break;
 
     if (scene.garments[g].plan.on)
-      report.dressing = dress_garment(scene, g, on, report.arrangement.shrink, watch);
+      report.dressing = dress_garment(scene, g, on, report.arrangement.contraction, watch);
     on.push_back(g);
   }
   return reports;

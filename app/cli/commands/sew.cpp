@@ -74,9 +74,12 @@ void print_pattern(const Garment& garment, const TriangleMesh& mesh) {
 void print_report(const GarmentReport& report, std::size_t intersections, double seconds) {
   const Arrangement& start = report.arrangement;
   std::printf(
-      "start: %zu pairs of faces intersect, %zu after moving panels, %zu with a body "
-      "thinner by %.0f mm (%d checks)\n",
-      start.pairs_before, start.pairs_moved, start.pairs_left, 1000 * start.shrink, start.checks);
+      "start: %zu pairs of faces intersect, %zu after moving panels, %zu with bodies "
+      "contracted over %.0f mm (%d checks)\n",
+      start.pairs_before, start.pairs_moved, start.pairs_left, 1000 * start.contraction,
+      start.checks);
+  if (start.repaired > 0)
+    std::printf("  %zu vertices were moved to part the faces that were left\n", start.repaired);
   for (const std::string& moved : start.moved) std::printf("  %s\n", moved.c_str());
   for (const std::string& left : start.left)
     if (start.pairs_left > 0) std::printf("  %s\n", left.c_str());
