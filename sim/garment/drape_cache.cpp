@@ -1,5 +1,6 @@
 #include "sim/garment/drape_cache.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -21,6 +22,8 @@ namespace {
 /// Grows when dressing gives other results for the same input.
 constexpr int kDressingVersion = 2;
 constexpr std::string_view kMagic = "icloth drape 1\n";
+constexpr const char* kExtension = ".drape";
+constexpr std::size_t kMostDrapes = 200;  // in the folder
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32;
 
 /// 128 bits of what is added: two FNV-1a sums with different starts.
@@ -166,7 +169,7 @@ std::uint64_t sum_of(std::string_view bytes) {
 }
 
 std::string path_of(const std::string& folder, const std::string& key) {
-  return folder + "/" + key + ".drape";
+  return folder + "/" + key + kExtension;
 }
 
 /// The positions of one garment; empty where the numbers are not those of this cloth.
@@ -178,6 +181,20 @@ std::vector<Vec3d> read_positions(Reader& reader, std::size_t expected) {
     if (!std::isfinite(p.x + p.y + p.z)) return {};
   }
   return reader.good() ? positions : std::vector<Vec3d>{};
+}
+
+/// Keeps the kMostDrapes files that were written last.
+void remove_oldest_drapes(const std::string& folder) {
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> drapes;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == kExtension)
+      drapes.emplace_back(entry.last_write_time(error), entry.path());
+  if (drapes.size() <= kMostDrapes) return;
+
+  std::ranges::sort(drapes);
+  drapes.resize(drapes.size() - kMostDrapes);
+  for (const auto& [written, path] : drapes) std::filesystem::remove(path, error);
 }
 
 }  // namespace
@@ -256,6 +273,7 @@ void save_drape(const std::string& folder, const std::string& key, const Drape& 
   std::filesystem::create_directories(folder, error);
   try {
     write_file(path_of(folder, key), std::string(kMagic) + file.bytes() + writer.bytes());
+    remove_oldest_drapes(folder);
   } catch (const InputError&) {
     // The next run dresses again.
   }

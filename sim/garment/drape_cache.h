@@ -26,7 +26,8 @@ std::string drape_folder();
 std::optional<Drape> load_drape(const std::string& folder, const std::string& key,
                                 const Scene& scene);
 
-/// Writes a drape; a folder that cannot be written is no error, since the cache can be missing.
+/// Writes a drape and removes the oldest ones above 200. A folder that cannot be written is no
+/// error, since the cache can be missing.
 void save_drape(const std::string& folder, const std::string& key, const Drape& drape);
 
 }  // namespace icloth

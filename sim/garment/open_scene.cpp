@@ -5,6 +5,7 @@
 #include "kernels/index.h"
 #include "sim/files/text.h"
 #include "sim/garment/drape_cache.h"
+#include "sim/scene/repair.h"
 
 namespace icloth {
 namespace {
@@ -79,6 +80,7 @@ std::shared_ptr<const Scene> open_scene(const std::string& argument,
     if (worn) save_drape(folder, key, *drape);
   }
   origin->notes.insert(origin->notes.end(), drape->notes.begin(), drape->notes.end());
+  if (scene->repair) repair_start(*scene, median_edge(*scene));
   return scene;
 }
 

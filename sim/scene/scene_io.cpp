@@ -72,13 +72,6 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
   return overrides;
 }
 
-/// Median of the edges at rest, since those of a stretched or bent start pose have other lengths.
-double median_edge(const Scene& scene) {
-  std::vector<double> lengths;
-  for (const Cloth& cloth : scene.cloths) add_rest_lengths(cloth, lengths);
-  return median(std::move(lengths));
-}
-
 void hang_by_highest(Cloth& cloth) {
   const std::vector<Vec3d>& x = cloth.mesh.positions;
   const auto [low, high] = std::ranges::minmax_element(x, {}, &Vec3d::y);
@@ -227,6 +220,12 @@ void still_air_without_drag(FileScene& file, SceneOrigin& origin) {
 
 }  // namespace
 
+double median_edge(const Scene& scene) {
+  std::vector<double> lengths;
+  for (const Cloth& cloth : scene.cloths) add_rest_lengths(cloth, lengths);
+  return median(std::move(lengths));
+}
+
 void fit_thickness(Scene& scene) {
   const double edge = median_edge(scene);
   if (!(edge > 0)) return;
@@ -254,7 +253,11 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
   // the scene has it.
   auto scene = std::make_shared<Scene>(std::move(file.scene));
   if (scene->cameras.empty()) add_framing_camera(*scene);
-  if (set.repair_start) repair_start(*scene, median_edge(*scene));
+  if (set.repair_start) {
+    // Garments are not where they start before they are put on (sim/garment/open_scene.h).
+    scene->repair.emplace();
+    if (scene->garments.empty()) repair_start(*scene, median_edge(*scene));
+  }
   return scene;
 }
 

@@ -27,12 +27,16 @@ struct SceneOrigin {
 /// SCENE argument of the command line: built-in name, scene JSON, or mesh file.
 /// `overrides` are --set arguments "KEY=VALUE"; keys are parameters, "triangles" (of all grids
 /// together), "preset" (sim/scene/presets.h), or "repair_start" (on: shallow intersections are
-/// separated, sim/scene/repair.h). `origin` is filled where it is given. Throws InputError with one
-/// line: file, element, value, what was expected.
+/// separated, sim/scene/repair.h; with garments that is left to open_scene). `origin` is filled
+/// where it is given. Throws InputError with one line: file, element, value, what was expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits = {},
                                         SceneOrigin* origin = nullptr);
+
+/// Median of the edges of all cloths at rest [m], since those of a stretched or bent start have
+/// other lengths; 0 without cloths.
+double median_edge(const Scene& scene);
 
 /// Lowers the contact thickness and the impact offset to what the edges at rest allow: neighbours
 /// repel each other in the plane above 0.3 and 0.05 edges.

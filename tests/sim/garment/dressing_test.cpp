@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -224,6 +226,37 @@ TEST(Dressing, TurnsSleevesDownToArmsThatHang) {
   EXPECT_EQ(std::ranges::count_if(start.moved, turned), 4);
 }
 
+TEST(Dressing, HoldsLabelledEdgesAtTheirHeightUntilTheySettle) {
+  // A tube that closes round the upper half of a ball slips upwards.
+  const TemporaryFolder folder;
+  const auto slip = [&](bool held) {
+    Scene scene = tube_scene(folder, 36, 18);
+    scene.obstacles[0].mesh = make_sphere(0.14, 600);
+    for (Vec3d& p : scene.obstacles[0].mesh.positions) p.y += 0.22;
+    if (held) scene.garments[0].plan.hold = {"collar"};
+
+    // The mean height of the collar at the start and when the weight comes on.
+    std::vector<Index> collar;
+    for (const LabelledEdge& edge : scene.garments[0].sewn.labelled)
+      collar.insert(collar.end(), edge.vertices.begin(), edge.vertices.end());
+    const auto height = [&](const std::vector<Vec3d>& x) {
+      double sum = 0;
+      for (Index v : collar) sum += x[at(v)].y;
+      return sum / static_cast<double>(collar.size());
+    };
+    const double start = height(scene.cloths[0].mesh.positions);
+    double closed = start;
+    dress_garment(scene, 0, {}, 0, [&](const Simulator& room, const DressingStatus& status) {
+      if (!status.settling) closed = height(room.snapshot().x1);
+      return true;
+    });
+    return closed - start;
+  };
+  const double free = slip(false), held = slip(true);
+  EXPECT_GT(free, 0.01);
+  EXPECT_LT(held, 0.5 * free);
+}
+
 TEST(Dressing, PutsInnerLayersOnFirst) {
   // The second garment of the file is the inner one; the outer one starts outside of it.
   const TemporaryFolder folder;
@@ -341,6 +374,46 @@ TEST(DrapeCache, GivesBackWhatWasSavedAndNothingElse) {
   EXPECT_FALSE(load_drape(place, key, scene));
   std::filesystem::resize_file(file, 40);
   EXPECT_FALSE(load_drape(place, key, scene));
+}
+
+TEST(DrapeCache, KeepsTheDrapesThatWereWrittenLast) {
+  const TemporaryFolder folder;
+  const std::string place = folder.path("cache");
+  const auto name = [](int number) {
+    const std::string digits = std::to_string(number);
+    return std::string(32 - digits.size(), '0') + digits;
+  };
+  Drape drape;
+  for (int k = 0; k < 203; ++k) {
+    save_drape(place, name(k), drape);
+    const std::string file = place + "/" + name(k) + ".drape";
+    const auto now = std::filesystem::last_write_time(file);
+    std::filesystem::last_write_time(file, now - std::chrono::hours(1000 - k));
+  }
+  // The file that was written last is the newest when the others are counted.
+  EXPECT_FALSE(std::filesystem::exists(place + "/" + name(2) + ".drape"));
+  EXPECT_TRUE(std::filesystem::exists(place + "/" + name(3) + ".drape"));
+  EXPECT_TRUE(std::filesystem::exists(place + "/" + name(202) + ".drape"));
+}
+
+TEST(OpenScene, RepairsGarmentsAfterTheyArePutOn) {
+  const TemporaryFolder folder;
+  folder.write("tube_specification.json", tube_pattern(40, 6));
+  folder.write("post.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+  const std::string file = folder.write(
+      "s.json",
+      R"({"cloths": [{"name": "t", "pattern": "tube_specification.json", "triangles": 300}],
+          "obstacles": [{"name": "post", "mesh": {"capsule": {"radius": 0.1, "length": 0.6}},
+                         "transform": {"translate": [0, 0.4, 0]}}]})");
+  const std::vector<std::string> overrides = {"repair_start=on"};
+  setenv("XDG_CACHE_HOME", folder.path("cache").c_str(), 1);
+  for (int round = 0; round < 2; ++round) {  // dressed, then from the cache
+    const auto scene = open_scene(file, overrides);
+    ASSERT_TRUE(scene->repair);
+    EXPECT_EQ(scene->repair->pairs_before, 0u);
+    EXPECT_EQ(scene->repair->moved, 0u);
+    EXPECT_EQ(count_conflicts(*scene), 0u);
+  }
 }
 
 }  // namespace
