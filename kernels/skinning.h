@@ -20,6 +20,13 @@ struct SkinArrays {
   const Vec3d* morph_delta;   ///< of the vertex when its target has the weight 1 (displacements)
 };
 
+/// The number, or the nearer end of what a coordinate may be. Clips of hostile files multiply large
+/// numbers along their bones until they overflow, and no later stage expects what is not finite.
+ICLOTH_HD inline double bounded_coordinate(double x) {
+  constexpr double kLargest = 1e9;  // [m] as of a position in any file
+  return !(x >= -kLargest) ? -kLargest : x > kLargest ? kLargest : x;
+}
+
 /// Where a vertex is when the bones are at `bone` and the morph targets have the weights `morph`.
 ICLOTH_HD inline Vec3d skinned_vertex(const SkinArrays& skin, const Affine* bone,
                                       const double* morph, Index v) {
@@ -33,7 +40,7 @@ ICLOTH_HD inline Vec3d skinned_vertex(const SkinArrays& skin, const Affine* bone
   Vec3d sum;
   for (Index w = skin.weight_first[v]; w < skin.weight_first[v + 1]; ++w)
     sum += skin.weight[w] * bone[skin.weight_bone[w]](x);
-  return sum;
+  return {bounded_coordinate(sum.x), bounded_coordinate(sum.y), bounded_coordinate(sum.z)};
 }
 
 }  // namespace icloth

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 #include "sim/files/text.h"
 
 namespace icloth {
@@ -17,7 +18,7 @@ namespace {
 
 VectorKey key_of(const aiVectorKey& k) { return {k.mTime, {k.mValue.x, k.mValue.y, k.mValue.z}}; }
 
-bool is_sound(VectorKey& key) { return norm_max(key.value) < 1e9; }
+bool is_sound(VectorKey& key) { return is_coordinate(key.value); }
 
 RotationKey key_of(const aiQuatKey& k) {
   return {k.mTime, k.mValue.w, k.mValue.x, k.mValue.y, k.mValue.z};

@@ -10,6 +10,7 @@
 
 #include "kernels/index.h"
 #include "sim/files/error.h"
+#include "sim/files/mesh_formats.h"
 #include "sim/files/text.h"
 
 namespace icloth {
@@ -160,7 +161,7 @@ void RigReader::add_morphs(const aiMesh& mesh, unsigned vertex, Index first_targ
     if (!target.mVertices || vertex >= target.mNumVertices) continue;
     const Vec3d delta = vector_of(target.mVertices[vertex]) - vector_of(mesh.mVertices[vertex]);
     if (delta == Vec3d{}) continue;
-    if (!(norm_max(delta) < 1e9))
+    if (!is_coordinate(delta))
       throw InputError(shown_path(path_) + ": mesh " + in_quotes(mesh.mName.C_Str()) +
                        ": morph target " + std::to_string(k) + ": vertex " +
                        std::to_string(vertex) +

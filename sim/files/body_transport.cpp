@@ -76,7 +76,6 @@ constexpr double kLargestTime = 1e9;    // [s]
 constexpr double kLargestWeight = 1e3;  // of a morph target
 
 bool is_within(double x, double largest) { return std::abs(x) <= largest; }
-bool is_fine(Vec3d p) { return is_within(norm_max(p), kLargestCoordinate); }
 bool is_fine(const Affine& map) {
   for (const double entry : map.m)
     if (!is_within(entry, kLargestCoordinate)) return false;
@@ -155,7 +154,7 @@ class Decoder {
   }
 
   void check(const TriangleMesh& mesh) const {
-    for (const Vec3d& p : mesh.positions) require(is_fine(p));
+    for (const Vec3d& p : mesh.positions) require(is_coordinate(p));
     for (const Triangle& face : mesh.faces)
       for (const Index v : face) require_index(v, mesh.positions.size());
     require(!mesh.faces.empty());
@@ -191,7 +190,7 @@ class Decoder {
 
   void check_weights(const Rig& rig, std::size_t vertices) const {
     require(rig.rest.size() == vertices && rig.weight.size() == rig.weight_bone.size());
-    for (const Vec3d& p : rig.rest) require(is_fine(p));
+    for (const Vec3d& p : rig.rest) require(is_coordinate(p));
     check_ranges(rig.weight_first, vertices, rig.weight.size(), 1, kMostWeights);
     for (std::size_t v = 0; v < vertices; ++v) {
       double sum = 0;
@@ -212,7 +211,7 @@ class Decoder {
     check_ranges(rig.morph_first, rig.rest.size(), rig.morph_target.size(), 0,
                  rig.morph_rest.size());
     for (const Index target : rig.morph_target) require_index(target, rig.morph_rest.size());
-    for (const Vec3d& delta : rig.morph_delta) require(is_fine(delta));
+    for (const Vec3d& delta : rig.morph_delta) require(is_coordinate(delta));
   }
 
   void read_clip(const Rig& rig, Clip& clip) {
@@ -226,11 +225,12 @@ class Decoder {
       NodeChannel& channel = clip.channels.emplace_back();
       channel.node = node;
       read_keys(channel.translation, clip.duration,
-                [](const VectorKey& k) { return is_fine(k.value); });
+                [](const VectorKey& k) { return is_coordinate(k.value); });
       read_keys(channel.rotation, clip.duration, [](const RotationKey& k) {
         return is_within(k.w * k.w + k.x * k.x + k.y * k.y + k.z * k.z - 1, 1e-6);
       });
-      read_keys(channel.scale, clip.duration, [](const VectorKey& k) { return is_fine(k.value); });
+      read_keys(channel.scale, clip.duration,
+                [](const VectorKey& k) { return is_coordinate(k.value); });
     }
 
     // The weights of morph targets follow.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,12 @@ PointCache parse_mdd(std::string_view bytes, const std::string& path, Index vert
 
 inline constexpr double kLargestCoordinate = 1e9;          ///< of a position in any file [m]
 inline constexpr std::size_t kLargestCount = 536'870'911;  ///< of vertices or triangles
+
+/// Whether all three numbers are finite and within kLargestCoordinate.
+inline bool is_coordinate(Vec3d p) {
+  return std::abs(p.x) <= kLargestCoordinate && std::abs(p.y) <= kLargestCoordinate &&
+         std::abs(p.z) <= kLargestCoordinate;
+}
 
 /// Throws InputError naming the first vertex of the frame that is not within kLargestCoordinate.
 void check_frame(std::span<const Vec3f> frame, std::size_t number, const std::string& path);

@@ -113,7 +113,7 @@ std::vector<std::string> garbage_for(std::string_view target) {
             "ply\nformat ascii 1.0\nelement " + x + " 1\nproperty int a\nend_header\n" + x + "\n"};
   if (target == "query") return {"vf," + x + ",", x + ",1", "vf" + y};
   if (target == "dxf") return {x, "0\n" + x, "0\nBLOCK\n2\n" + y, "0\nBLOCK\n0\nLINE\n10\n" + x};
-  if (target == "pc2" || target == "mdd") return {x, "POINTCACHE2" + x};
+  if (target == "pc2" || target == "mdd" || target == "body") return {x, "POINTCACHE2" + x};
   std::string deep = "1";
   for (int k = 0; k < 3000; ++k) deep = "[" + deep + "]";
   return {"{\"" + x + "\": 1}",

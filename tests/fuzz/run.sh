@@ -14,7 +14,8 @@ if [[ ${1:-} =~ ^[0-9]+$ ]]; then
   shift
 fi
 targets=("$@")
-((${#targets[@]})) || targets=(scene material recording camera obj ply pc2 mdd query)
+((${#targets[@]})) || targets=(scene material recording camera obj ply pc2 mdd query pattern
+                            dxf body)
 
 build=${ICLOTH_FUZZ_BUILD:-$root/build-fuzz}
 if ! command -v clang++ > /dev/null; then
@@ -41,8 +42,8 @@ run_target() {
   cp "$here/seeds/$name"/* "$corpus"
   find "$here/regressions/$name" -type f -exec cp {} "$corpus" \; 2> /dev/null || true
   case $name in
-    scene | material | recording | camera) dictionary=json ;;
-    pc2 | mdd) dictionary= ;;
+    scene | material | recording | camera | pattern) dictionary=json ;;
+    pc2 | mdd | dxf | body) dictionary= ;;
     *) dictionary=$name ;;
   esac
   # A file of 8 KiB needs no more than 64 MiB at once: unchecked sizes show.

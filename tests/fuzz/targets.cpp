@@ -17,6 +17,7 @@ std::span<const Target> targets() {
       {"query", read_query},
       {"pattern", read_pattern_json},
       {"dxf", read_dxf},
+      {"body", read_body_answer},
   };
   return kTargets;
 }

@@ -32,6 +32,7 @@ std::string read_recording(std::string_view bytes);
 std::string read_camera(std::string_view bytes);
 std::string read_pattern_json(std::string_view bytes);
 std::string read_dxf(std::string_view bytes);
+std::string read_body_answer(std::string_view bytes);
 std::string read_query(std::string_view bytes);
 
 }  // namespace icloth::fuzz
