@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "sim/files/error.h"
 #include "sim/files/json_reader.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -39,6 +40,14 @@ bool in_range(const nlohmann::json& json, NumberRange range) {
 const nlohmann::json kNull;
 
 }  // namespace
+
+bool JsonValue::is_object() const { return json_->is_object(); }
+bool JsonValue::is_array() const { return json_->is_array(); }
+bool JsonValue::is_string() const { return json_->is_string(); }
+bool JsonValue::is_number() const { return json_->is_number(); }
+bool JsonValue::is_unsigned() const { return json_->is_number_unsigned(); }
+bool JsonValue::is_boolean() const { return json_->is_boolean(); }
+std::size_t JsonValue::size() const { return json_->size(); }
 
 void JsonValue::refuse(std::string_view expected) const {
   throw InputError(where_ + ": value " + shown(*json_) + ", expected " + std::string(expected));

@@ -2,7 +2,7 @@
 // says where it is. Included by the loaders only.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +27,14 @@ class JsonValue {
 
   const nlohmann::json& json() const { return *json_; }
   const std::string& where() const { return where_; }
+
+  bool is_object() const;
+  bool is_array() const;
+  bool is_string() const;
+  bool is_number() const;
+  bool is_unsigned() const;  ///< a whole number without a sign
+  bool is_boolean() const;
+  std::size_t size() const;  ///< of an array or object, else 1; a null: 0
 
   /// Throws InputError: where, the value (shortened) and what was expected.
   [[noreturn]] void refuse(std::string_view expected) const;

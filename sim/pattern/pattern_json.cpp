@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -35,14 +36,14 @@ double norm_of(Vec2d a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 
 /// The elements of an array that is not longer than a limit.
 std::vector<JsonValue> limited_items(const JsonValue& value, std::size_t most) {
-  if (value.json().is_array() && value.json().size() > most)
+  if (value.is_array() && value.json().size() > most)
     value.refuse("an array of at most " + std::to_string(most) + " elements");
   return value.items();
 }
 
 /// True for true and for numbers other than 0, as the files have both.
 bool flag_of(const JsonValue& value) {
-  return value.json().is_boolean() ? value.boolean() : value.integer(0, 1) != 0;
+  return value.is_boolean() ? value.boolean() : value.integer(0, 1) != 0;
 }
 
 class PatternReader {
@@ -119,7 +120,7 @@ std::vector<std::string> PatternReader::panel_names(JsonObject& content, const J
     if (numbers_.emplace(name, static_cast<Index>(names.size())).second) names.push_back(name);
   };
   const nlohmann::json& known = panels.value().json();
-  if (content.has("panel_order") && content["panel_order"].json().is_array())
+  if (content.has("panel_order") && content["panel_order"].is_array())
     for (const auto& name : content["panel_order"].json())
       if (name.is_string() && known.contains(name.get_ref<const std::string&>()))
         add(name.get<std::string>());
@@ -131,8 +132,7 @@ void PatternReader::read_panel(const std::string& name, JsonObject& panels) {
   JsonObject object(JsonValue(panels[name].json(), panel_place(name)));
   Panel panel;
   panel.name = name;
-  if (object.has("label") && object["label"].json().is_string())
-    panel.label = object.text("label", "");
+  if (object.has("label") && object["label"].is_string()) panel.label = object.text("label", "");
   read_corners(panel, object);
   read_edges(panel, object);
 
@@ -196,7 +196,7 @@ void PatternReader::read_edges(Panel& panel, JsonObject& object) {
 
     if (item.has("curvature") && !item["curvature"].json().is_null())
       read_curve(panel, edge, item["curvature"]);
-    if (item.has("label") && item["label"].json().is_string()) edge.label = item.text("label", "");
+    if (item.has("label") && item["label"].is_string()) edge.label = item.text("label", "");
     panel.edges.push_back(std::move(edge));
   }
 }
@@ -222,7 +222,7 @@ Vec2d PatternReader::control_point(const Panel& panel, const PanelEdge& edge,
 
 void PatternReader::read_curve(const Panel& panel, PanelEdge& edge, const JsonValue& curvature) {
   // A bare pair is the older form of a quadratic curve.
-  if (curvature.json().is_array()) {
+  if (curvature.is_array()) {
     edge.curve = EdgeCurve::quadratic;
     edge.control[0] = control_point(panel, edge, curvature);
     return;
@@ -281,7 +281,7 @@ PanelSide PatternReader::read_side(const JsonValue& value) const {
   const Panel& panel = pattern_.panels[static_cast<std::size_t>(found->second)];
   const auto last = static_cast<std::int64_t>(panel.edges.size()) - 1;
   const JsonValue edge = object.required("edge");
-  if (!edge.json().is_number() || edge.json().get<double>() < 0 ||
+  if (!edge.is_number() || edge.json().get<double>() < 0 ||
       edge.json().get<double>() > static_cast<double>(last))
     edge.refuse("an edge of panel " + in_quotes(name) + ", from 0 to " + std::to_string(last));
   return {found->second, static_cast<Index>(edge.integer(0, last))};
@@ -296,7 +296,7 @@ void PatternReader::read_stitches(const JsonValue& stitches) {
     if (parts.size() < 2) value.refuse("two edges, each with panel and edge");
     Stitch stitch;
     for (std::size_t k = 0; k < 2; ++k) stitch.sides[k] = read_side(parts[k]);
-    if (parts.size() == 3 && (!parts[2].json().is_string() || parts[2].text() != "right_wrong"))
+    if (parts.size() == 3 && (!parts[2].is_string() || parts[2].text() != "right_wrong"))
       parts[2].refuse("\"right_wrong\" or nothing");
     stitch.right_wrong = parts.size() == 3;
 

@@ -5,6 +5,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"

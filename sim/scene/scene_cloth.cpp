@@ -14,7 +14,6 @@
 namespace icloth {
 namespace {
 
-constexpr Index kDefaultTriangles = 2000;
 constexpr int kMaxSubdivisions = 6;
 
 /// A distance in metres; 0 or true: exact doubles alone, false: nothing is welded.
@@ -24,7 +23,7 @@ WeldChoice parse_weld(const JsonValue& value) {
   choice.asked = true;
 
   // A truth value switches welding, and a number is its distance.
-  if (value.json().is_boolean()) {
+  if (value.is_boolean()) {
     choice.on = value.boolean();
     return choice;
   }
@@ -229,14 +228,14 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
 
   // An item is a box of vertices, the name of a place on a grid, or one vertex.
   for (const JsonValue& item : value.items()) {
-    if (item.json().is_object()) {
+    if (item.is_object()) {
       JsonObject object(item);
       pin_box(object.required("box"), loaded, pinned);
       object.finish();
       continue;
     }
     std::vector<Index> named;
-    if (item.json().is_string() && loaded.grid) named = grid_vertices(*loaded.grid, item.text());
+    if (item.is_string() && loaded.grid) named = grid_vertices(*loaded.grid, item.text());
     if (named.empty()) named = {parse_vertex(item, loaded)};
     for (Index v : named)
       if (v != kNone) pinned[static_cast<std::size_t>(v)] = true;  // without a face it stays anyway
@@ -247,23 +246,6 @@ void parse_pins(const JsonValue& value, LoadedCloth& loaded) {
 }
 
 }  // namespace
-
-double total_grid_triangles(const nlohmann::json& scene) {
-  double total = 0;
-  if (!scene.is_object() || !scene.contains("cloths")) return 0;
-
-  // Ill-formed entries are left to the parser, whose messages name them.
-  for (const auto& cloth : scene["cloths"]) {
-    const bool is_grid = cloth.is_object() && cloth.contains("mesh") && cloth["mesh"].is_object() &&
-                         cloth["mesh"].contains("grid");
-    const bool is_sewn = cloth.is_object() && cloth.contains("pattern");
-    if (!is_grid && !is_sewn) continue;
-    const bool chosen = cloth.contains("triangles") && cloth["triangles"].is_number();
-    const double usual = is_sewn ? kPatternTriangles : kDefaultTriangles;
-    total += chosen ? std::max(cloth["triangles"].get<double>(), 0.0) : usual;
-  }
-  return total;
-}
 
 LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number) {
   JsonObject object(value);
@@ -277,7 +259,7 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   } else {
     for (const char* key : {"dress", "on", "layer"})
       if (object.has(key)) object[key].refuse("no such key: only with \"pattern\"");
-    if (object.required("mesh").json().is_string()) {
+    if (object.required("mesh").is_string()) {
       read_cloth_mesh(object, folder, loaded);
     } else {
       make_cloth_grid(object, folder, loaded);
@@ -298,7 +280,7 @@ LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t 
   if (object.has("pins")) parse_pins(object["pins"], loaded);
   const JsonValue material = object["material"];
   loaded.cloth.material =
-      material.json().is_object()
+      material.is_object()
           ? parse_material(material.json(), material.where(), folder.files)
           : load_material(object.text("material", "default"), material.where(), folder.files);
 

@@ -12,7 +12,7 @@ namespace {
 /// Parses how the garment is put on: false, true, or an object with times and held labels.
 DressPlan parse_dress(const JsonValue& value) {
   DressPlan plan;
-  if (value.json().is_boolean()) {
+  if (value.is_boolean()) {
     plan.on = value.boolean();
     return plan;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "kernels/index.h"
@@ -48,7 +49,7 @@ void set_vector(Parameters& parameters, const std::string& group, const JsonValu
 }
 
 void parse_wind(const JsonValue& value, Parameters& parameters) {
-  if (value.json().is_array()) return set_vector(parameters, "wind", value);
+  if (value.is_array()) return set_vector(parameters, "wind", value);
   JsonObject wind(value);
   if (wind.has("velocity")) set_vector(parameters, "wind", wind["velocity"]);
   for (const char* key : {"air_density", "air_drag"})
@@ -196,7 +197,7 @@ void parse_parameters(JsonValue value, const std::string& group, Parameters& par
 }
 
 Index find_cloth(const JsonValue& value, const std::vector<LoadedCloth>& cloths) {
-  if (value.json().is_number())
+  if (value.is_number())
     return static_cast<Index>(value.integer(0, static_cast<std::int64_t>(cloths.size()) - 1));
   for (std::size_t i = 0; i < cloths.size(); ++i)
     if (cloths[i].cloth.name == value.text()) return static_cast<Index>(i);
@@ -209,7 +210,7 @@ Index parse_vertex(JsonValue value, const LoadedCloth& cloth) {
       layout.is_identity() ? cloth.cloth.mesh.positions.size() : layout.vertex.size();
 
   // Numbers are those of the vertices in the file, of which some may be welded or unused.
-  if (value.json().is_number()) {
+  if (value.is_number()) {
     const std::int64_t number = value.integer(0, static_cast<std::int64_t>(vertices) - 1);
     return layout.is_identity() ? static_cast<Index>(number)
                                 : layout.vertex[static_cast<std::size_t>(number)];
@@ -264,6 +265,23 @@ CameraPose parse_camera(JsonValue value) {
   if (!(norm(across) > 0)) value.refuse("eye and target apart, and not along up");
   object.finish();
   return camera;
+}
+
+double total_grid_triangles(const nlohmann::json& scene) {
+  double total = 0;
+  if (!scene.is_object() || !scene.contains("cloths")) return 0;
+
+  // Ill-formed entries are left to the parser, whose messages name them.
+  for (const auto& cloth : scene["cloths"]) {
+    const bool is_grid = cloth.is_object() && cloth.contains("mesh") && cloth["mesh"].is_object() &&
+                         cloth["mesh"].contains("grid");
+    const bool is_sewn = cloth.is_object() && cloth.contains("pattern");
+    if (!is_grid && !is_sewn) continue;
+    const bool chosen = cloth.contains("triangles") && cloth["triangles"].is_number();
+    const double usual = is_sewn ? kPatternTriangles : kDefaultTriangles;
+    total += chosen ? std::max(cloth["triangles"].get<double>(), 0.0) : usual;
+  }
+  return total;
 }
 
 bool sets_parameter(const nlohmann::json& scene, const std::string& group, const std::string& key) {

@@ -62,7 +62,8 @@ double total_grid_triangles(const nlohmann::json& scene);
 
 /// Sews a cloth from its pattern: "pattern", "triangles", "dress", "on", "layer", "transform".
 void sew_cloth(JsonObject& object, const SceneFolder& folder, LoadedCloth& loaded);
-/// Triangles of a cloth that is sewn and does not say how many.
+/// Triangles of a cloth or a shape that does not say how many, and of a cloth that is sewn.
+inline constexpr Index kDefaultTriangles = 2000;
 inline constexpr double kPatternTriangles = 4000;
 
 LoadedCloth parse_cloth(JsonValue value, const SceneFolder& folder, std::size_t number);

@@ -83,7 +83,7 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
 
   // The surface comes from a file, whose units and axes may differ, or from a simple shape.
   const JsonValue mesh = object.required("mesh");
-  const bool is_file = mesh.json().is_string();
+  const bool is_file = mesh.is_string();
   Body body;
   FileSpace space;
   if (is_file) {

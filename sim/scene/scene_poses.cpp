@@ -34,12 +34,12 @@ std::string clip_names(const std::vector<Clip>& clips) {
 /// The number of the clip that a scene names or counts.
 std::size_t find_clip(const JsonValue& value, const std::vector<Clip>& clips,
                       const std::string& file) {
-  if (value.json().is_string()) {
+  if (value.is_string()) {
     const auto found = std::ranges::find(clips, value.text(), &Clip::name);
     if (found != clips.end()) return static_cast<std::size_t>(found - clips.begin());
-  } else if (value.json().is_number_unsigned()) {
-    const auto number = value.json().get<std::uint64_t>();
-    if (number < clips.size()) return static_cast<std::size_t>(number);
+  } else if (value.is_unsigned()) {
+    const double number = value.number({0, 1e300});
+    if (number < static_cast<double>(clips.size())) return static_cast<std::size_t>(number);
   }
   if (clips.empty()) value.refuse("no such key: " + file + " holds no clips");
   value.refuse("a clip of " + file + ", by its name or counted from 0: " + clip_names(clips));

@@ -179,7 +179,7 @@ void check_pairs(const JsonValue& where, Seam& seam, const LoadedCloth& cloth, b
 
 Seam parse_seam(const JsonValue& value, Index own, const std::vector<LoadedCloth>& cloths,
                 const SceneFolder& folder, std::size_t number) {
-  if (value.json().is_string())
+  if (value.is_string())
     value.refuse(
         "an object with \"from\" and \"to\", or \"pairs\": names of edges are those of a "
         "pattern, which has its own stitches");

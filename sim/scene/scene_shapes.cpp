@@ -10,7 +10,6 @@ namespace icloth {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr Index kDefaultTriangles = 2000;
 constexpr Index kMaxRoundTriangles = 1'000'000;
 const NumberRange kSize{1e-6, 1e6};
 
@@ -115,7 +114,7 @@ GridShape parse_grid(JsonValue value, Index triangles) {
 
 TriangleMesh parse_body_shape(JsonValue value, Index most_triangles) {
   JsonObject object(value);
-  if (value.json().size() != 1) value.refuse("one of sphere, capsule, box, plane, funnel");
+  if (value.size() != 1) value.refuse("one of sphere, capsule, box, plane, funnel");
 
   // The only key names the shape; finish() refuses any that is not known.
   TriangleMesh mesh;
@@ -130,7 +129,7 @@ TriangleMesh parse_body_shape(JsonValue value, Index most_triangles) {
 
 Vec3d parse_rotation(JsonValue value) {
   // An axis and an angle give the rotation vector directly.
-  if (value.json().is_object()) {
+  if (value.is_object()) {
     JsonObject object(value);
     const Vec3d axis = object.required("axis").vector();
     const double angle = object.required("angle").number({-1e6, 1e6});
@@ -161,7 +160,7 @@ Placement parse_transform(JsonValue value) {
   // One number scales all axes alike, and three numbers scale each axis by itself.
   if (object.has("scale")) {
     const JsonValue scale = object["scale"];
-    const double same = scale.json().is_number() ? scale.number(kSize) : 0;
+    const double same = scale.is_number() ? scale.number(kSize) : 0;
     place.scale = same > 0 ? Vec3d{same, same, same} : scale.vector(kSize);
   }
   object.finish();
