@@ -156,6 +156,7 @@ void Solver::set_parameters(const Parameters& parameters) {
 
 void Solver::begin_substep(double start, double dt) {
   state_.x0.copy_from(state_.x1);
+  const double time = body_time(start + dt);
 
   // Obstacles that move are posed at the end of the substep. In between they move in straight
   // lines, as the cloth does.
@@ -165,13 +166,25 @@ void Solver::begin_substep(double start, double dt) {
     const Obstacle& obstacle = scene_->obstacles[static_cast<std::size_t>(object.source)];
     if (!obstacle.moves()) continue;
     if (skins_[o])
-      skins_[o]->place(obstacle.skin_pose(start + dt), state_.x1.view());
+      skins_[o]->place(obstacle.skin_pose(time), state_.x1.view());
     else
-      upload_pose(obstacle, start + dt, object.first_vertex);
+      upload_pose(obstacle, time, object.first_vertex);
     for_each("step.obstacle", object.vertex_count,
              ObstacleVelocity{state_.x0.view(), state_.x1.view(), state_.v.view(),
                               object.first_vertex, real(1 / dt)});
   }
+}
+
+/// The time of clips and keyframes at a time of the step in progress. At full speed nothing is
+/// rounded: both are the same to the last bit.
+double Solver::body_time(double time) const {
+  return time - (state_.body_lag + (1 - parameters_.bodies.speed) * (time - state_.time));
+}
+
+/// Moves the clock on by a step, and that of the bodies at their speed.
+void Solver::advance_clocks(double dt) {
+  state_.body_lag += (1 - parameters_.bodies.speed) * dt;
+  state_.time += dt;
 }
 
 /// Poses a body on the host, where no bones move it.

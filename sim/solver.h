@@ -61,6 +61,8 @@ class Solver final : public Simulator {
   // sim/solver.cpp
   void upload_skins();
   void begin_substep(double start, double dt);
+  double body_time(double time) const;
+  void advance_clocks(double dt);
   void upload_pose(const Obstacle& obstacle, double time, Index first_vertex);
   void accept_substep(StepReport& report, double dt);
   double zone_work(double dt);

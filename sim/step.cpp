@@ -100,7 +100,7 @@ void Solver::finish_step(StepReport& report) {
   report.offending.clear();
   report.no_room = false;
   watch_seams(mesh_, state_);
-  state_.time += report.dt;
+  advance_clocks(report.dt);
   report.step = ++state_.step;
 }
 
@@ -256,7 +256,7 @@ void Solver::pass_over() {
 
   // The cloth goes on from rest: what it remembers of the motion before is not true any more.
   rest_cloth();
-  state_.time += dt;
+  advance_clocks(dt);
   ++state_.step;
 }
 

@@ -43,6 +43,7 @@ constexpr auto group_of(CcdParameters) { return &Parameters::ccd; }
 constexpr auto group_of(ImpactZoneParameters) { return &Parameters::impact_zones; }
 constexpr auto group_of(GrabParameters) { return &Parameters::grab; }
 constexpr auto group_of(SeamParameters) { return &Parameters::seams; }
+constexpr auto group_of(BodyParameters) { return &Parameters::bodies; }
 
 /// The group that a member belongs to; never called, its result type is what counts.
 template <class Group, class Type>
@@ -83,6 +84,7 @@ using Broad = BroadPhaseParameters;
 using Zones = ImpactZoneParameters;
 using Grab = GrabParameters;
 using Stitch = SeamParameters;
+using Bodies = BodyParameters;
 
 constexpr std::string_view kOnlyPaper = "impact_zones.solver=augmented_lagrangian";
 
@@ -258,6 +260,10 @@ constexpr ParameterInfo kTable[] = {
     {"seams.reach", "reach of a stitch", "m", field<&Stitch::reach>(), 0, 1, false,
      "seams that wait for a hand have to be brought nearer",
      "seams that wait for a hand catch from farther away", "own choice"},
+
+    {"bodies.speed", "speed of the bodies", "", field<&Bodies::speed>(), 0, 4, false,
+     "clips and keyframes run slower; 0 holds the bodies where they are",
+     "bodies move faster, and cloth has less time to get out of their way", "own choice"},
 };
 
 /// Other names that are read: the paper's symbols, and names of earlier versions.

@@ -103,6 +103,10 @@ struct SeamParameters {
   double reach = 0.02;
 };
 
+struct BodyParameters {
+  double speed = 1.0;
+};
+
 /// Settings of a running simulation; all of them may change between two steps.
 struct Parameters {
   StepParameters step;
@@ -116,6 +120,7 @@ struct Parameters {
   ImpactZoneParameters impact_zones;
   GrabParameters grab;
   SeamParameters seams;
+  BodyParameters bodies;
 };
 
 /// How the member behind a row is read, written and offered. Made by field() in parameters.cpp,

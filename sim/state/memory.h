@@ -105,6 +105,8 @@ struct MemoryOf {
 
   std::int64_t step = 0;  ///< steps made so far
   double time = 0;        ///< [s]
+  /// How far the bodies are behind it, because they were slowed down (bodies.speed) [s].
+  double body_lag = 0;
 
   List<Vec3<Real>> x1;  ///< positions at the end of the last step, cloths first [m] (vertices)
   List<Vec3<Real>> v;   ///< velocities [m/s] (vertices)
@@ -152,6 +154,7 @@ void for_each_part(const Visit& visit, Memory&... m) {
   // The time, the positions and the velocities are those that the last step reached.
   visit(MemoryPart{"step", Extent::single}, m.step...);
   visit(MemoryPart{"time", Extent::single}, m.time...);
+  visit(MemoryPart{"body_lag", Extent::single}, m.body_lag...);
   visit(MemoryPart{"x1", Extent::vertices}, m.x1...);
   visit(MemoryPart{"v", Extent::vertices}, m.v...);
 

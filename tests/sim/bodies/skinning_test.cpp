@@ -422,6 +422,60 @@ TEST(SkinnedBody, WalksUnderClothWithoutAnyPenetrationWhateverTheThreads) {
   EXPECT_TRUE(find_intersections(positions, soup.faces, soup.group).empty());
 }
 
+/// Vertices of the body of the walking scene after so many steps, each at its speed.
+std::vector<Vec3f> body_after(const std::shared_ptr<const Scene>& scene,
+                              const std::vector<double>& speeds) {
+  const auto simulator = make_simulator(Build::cpu32, scene);
+  for (const double speed : speeds) {
+    Parameters parameters = simulator->parameters();
+    parameters.bodies.speed = speed;
+    simulator->set_parameters(parameters);
+    EXPECT_TRUE(simulator->step({}).accepted);
+  }
+  std::vector<Vec3f> x;
+  simulator->positions(x);
+  return {x.begin() + static_cast<std::ptrdiff_t>(scene->cloths[0].mesh.positions.size()), x.end()};
+}
+
+TEST(SkinnedBody, StandsStillWhileItIsHeldAndGoesOnFromThere) {
+  if (!std::filesystem::exists(data_file("cesium_man.gltf"))) GTEST_SKIP() << "no data";
+  const TemporaryFolder folder;
+  const auto scene = walking_scene(folder);
+  const std::vector<Vec3f> moved = body_after(scene, {1, 1, 1});
+  EXPECT_EQ(body_after(scene, {1, 1, 1, 0, 0}), moved);
+  const auto nearly_equal = [](const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
+    double largest = 0;
+    for (std::size_t v = 0; v < a.size(); ++v)
+      largest = std::max(largest, norm(convert<double>(a[v]) - convert<double>(b[v])));
+    return largest < 1e-6;
+  };
+  const std::vector<Vec3f> further = body_after(scene, {1, 1, 1, 1});
+  EXPECT_FALSE(nearly_equal(further, moved));
+  EXPECT_TRUE(nearly_equal(body_after(scene, {1, 0, 1, 0, 1, 1}), further));
+  EXPECT_TRUE(nearly_equal(body_after(scene, {0.5, 0.5, 2, 1}), further));
+}
+
+TEST(SkinnedBody, GoesBackInTimeToWhereItWasHeld) {
+  if (!std::filesystem::exists(data_file("cesium_man.gltf"))) GTEST_SKIP() << "no data";
+  const TemporaryFolder folder;
+  const auto simulator = make_simulator(Build::cpu32, walking_scene(folder));
+  const auto step_at = [&](double speed) {
+    Parameters parameters = simulator->parameters();
+    parameters.bodies.speed = speed;
+    simulator->set_parameters(parameters);
+    simulator->step({});
+  };
+  for (const double speed : {1.0, 0.0, 1.0}) step_at(speed);
+  const Snapshot middle = simulator->snapshot();
+  EXPECT_NEAR(middle.body_lag, simulator->parameters().step.time_step, 1e-12);
+  step_at(1);
+  const std::uint64_t hash = simulator->state_hash();
+  step_at(1);
+  simulator->restore(middle);
+  step_at(1);
+  EXPECT_EQ(simulator->state_hash(), hash);
+}
+
 TEST(SkinnedBody, AClipThatIsNotThereIsRefusedWithThoseThatAre) {
   if (!std::filesystem::exists(data_file("greenman.glb"))) GTEST_SKIP() << "no data";
   const TemporaryFolder folder;

@@ -34,6 +34,7 @@ Snapshot full_snapshot() {
   Snapshot s;
   s.step = 12;
   s.time = 0.12;
+  s.body_lag = 0.03;
   for (int k = 0; k < 4; ++k) s.x1.push_back(vector()), s.v.push_back(vector());
   s.held = {{7, vector(), 1}, {1u << 31, vector(), 0}};
   for (int k = 0; k < 3; ++k) {
@@ -155,7 +156,7 @@ TEST(Memory, RefusesEveryAlteredByte) {
 /// A signed count of anything must neither take memory for it nor be believed.
 TEST(Memory, RefusesAlteredLengthsThatAreSignedAsWell) {
   const Bytes bytes = memory_to_bytes(full_snapshot());
-  constexpr std::size_t kFirstCount = kHead + 16;  // of x1, after step and time
+  constexpr std::size_t kFirstCount = kHead + 24;  // of x1, after step, time and lag
   for (const std::uint64_t count : {0ull, 3ull, 5ull, 8ull, 1ull << 40, ~0ull}) {
     Bytes altered = bytes;
     put(altered, kFirstCount, count);
@@ -184,7 +185,7 @@ TEST(Memory, RefusesOtherFilesAndVersions) {
   EXPECT_NE(refusal(other).find("ICLOTHME"), std::string::npos);
   other = memory_to_bytes(full_snapshot());
   put(other, 8, std::uint32_t{1});
-  EXPECT_NE(refusal(other).find("version 1, expected 2"), std::string::npos);
+  EXPECT_NE(refusal(other).find("version 1, expected 3"), std::string::npos);
 }
 
 TEST(Memory, CountsTheBytesOfItsLists) {
