@@ -123,6 +123,17 @@ std::vector<OverlayVertex> overlay_triangles(const World& world, const Frame& fr
     builder.ball(handle.target, 6, colour);
   }
 
+  // A stitch is a line between its two points until they meet: red far apart, green near each
+  // other.
+  constexpr double kShut = 5e-4, kWide = 0.05;  // [m]
+  for (const auto& [a, b] : frame.stitches) {
+    const Vec3d from = at(frame, a), to = at(frame, b);
+    const double gap = norm(to - from);
+    if (gap > kShut)
+      builder.line(builder.lifted(from, 3), builder.lifted(to, 3), 1.5,
+                   saturation_colour(gap / kWide));
+  }
+
   // The patch under the pointer is shown as rings.
   for (const Vec3f point : frame.hover) {
     const Vec3d p = builder.lifted(convert<double>(point), 8);

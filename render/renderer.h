@@ -2,6 +2,7 @@
 // never writes the state, and knows nothing of windows.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,7 +40,9 @@ struct Frame {
   std::span<const HandleState> handles{};      ///< line from hit to target, coloured by saturation
   std::span<const Index> marked_faces{};       ///< global faces shown in red, also when hidden
   std::span<const Index> marked_vertices{};    ///< global vertices shown as dots (pins)
-  std::span<const Vec3f> hover{};              ///< points under the pointer, drawn as rings [m]
+  /// Global vertices that are stitched and not sewn yet: lines, coloured by their lengths.
+  std::span<const std::array<Index, 2>> stitches{};
+  std::span<const Vec3f> hover{};  ///< points under the pointer, drawn as rings [m]
   ViewMode view = ViewMode::shaded;
   double strain_range = 0.1;  ///< strain that gets the last colour of the scale
 };

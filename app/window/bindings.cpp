@@ -45,6 +45,7 @@ constexpr Binding kTable[] = {
     {T::key, 'V', kCtrl, H::any, U::any, A::paste_camera, kCamera, "", "", ""},
 
     {T::key, key::kSpace, kPlain, H::any, U::any, A::play_pause, kTime, "Space", "play or pause", "Space: play"},
+    {T::key, 'B', kPlain, H::any, U::any, A::hold_bodies, kTime, "B", "hold the bodies where they are, or let them go on; the cloth moves on", ""},
     {T::key, key::kRight, kPlain, H::any, U::any, A::step, kTime, "Right or .", "one step", ""},
     {T::key, key::kPeriod, kPlain, H::any, U::any, A::step, kTime, "", "", ""},
     {T::key, key::kLeft, kPlain, H::any, U::any, A::step_back, kTime, "Left", "one step back in the history", ""},

@@ -30,7 +30,7 @@ enum class Action {
   orbit, pan, dolly_drag, dolly, set_pivot, frame_selection, frame_all, menu, copy_camera,
   paste_camera,
   // simulation
-  play_pause, step, step_back, pass_over, reset, undo, redo, save_session,
+  play_pause, hold_bodies, step, step_back, pass_over, reset, undo, redo, save_session,
   // window
   view_shaded, view_wireframe, view_strain, toggle_panels, help, full_screen, screenshot, quit,
 };

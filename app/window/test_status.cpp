@@ -16,10 +16,13 @@ void TestStatusFile::write(const TestStatus& s) const {
   if (!file) return;
 
   // The line is JSON, written by hand as its values need no escaping.
+  std::fprintf(file, "{\"phase\": \"%s\", \"dressing_step\": %d, \"body_speed\": %.9g, ",
+               s.phase.c_str(), s.dressing_step, s.body_speed);
+  std::fprintf(file, "\"garments\": \"%s\", ", s.garments.c_str());
   const auto word = [](bool b) { return b ? "true" : "false"; };
   std::fprintf(
       file,
-      "{\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "
+      "\"step\": %lld, \"time\": %.9g, \"penetrations\": %lld, \"max_speed\": %.9g, "
       "\"fps\": %.3f, \"steps_per_second\": %.3f, \"handles\": %d, \"parked\": %d, \"notes\": %d, "
       "\"playing\": %s, \"failed\": %s, \"panels\": %s, ",
       s.step, s.time, s.penetrations, s.max_speed, s.ui_fps, s.steps_per_second, s.handles,

@@ -10,6 +10,8 @@ namespace icloth {
 
 /// The numbers of the line.
 struct TestStatus {
+  std::string phase = "running";  ///< "opening" while a scene is dressed, "choosing" before one
+  int dressing_step = 0;
   long long step = 0;
   double time = 0;
   long long penetrations = 0;
@@ -17,6 +19,8 @@ struct TestStatus {
   double ui_fps = 0, steps_per_second = 0;
   int handles = 0, parked = 0;
   int notes = 0;  ///< about the input of the scene
+  double body_speed = 1;
+  std::string garments;  ///< in one line; empty: none
   bool playing = false, failed = false, panels = true;
   std::array<float, 4> view{};  ///< left, top, width, height of the 3D picture [logical pixels]
   Vec3d mean;                   ///< of the cloth's vertices [m]

@@ -1,11 +1,10 @@
 #include "app/window/viewer.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 #include <thread>
 
 #include "app/common/element_names.h"
+#include "app/window/screenshot.h"
 #include "app/window/theme.h"
 #include "render/ui_painter.h"
 #include "sim/files/error.h"
@@ -19,14 +18,6 @@ constexpr double kNoteSeconds = 8, kStatusSeconds = 1;
 constexpr double kStrainRange = 0.1;
 constexpr double kRestSeconds = 0.3, kLongestPause = 0.2, kMovingSharpness = 0.5;
 constexpr Index kGraspSamples = 97;
-
-/// The number of threads of the solver. Software rendering needs a core for itself; a graphics card
-/// does not.
-int solver_threads(int asked, bool software) {
-  if (asked > 0) return asked;
-  const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return software ? std::max(1, all - 1) : all;
-}
 
 /// Explains why a start state that intersects is refused, and what helps where that is known.
 std::string start_sentence(std::size_t pairs, const std::vector<std::string>& remedies) {
@@ -51,11 +42,32 @@ std::unique_ptr<Session> make_session(const SimulationOptions& options, Build bu
   return std::make_unique<Session>(make_simulator(build, scene), session);
 }
 
+/// The vertices that open seams pull together, by their numbers in the world.
+std::vector<std::array<Index, 2>> stitched_vertices(const Scene& scene, const World& world) {
+  std::vector<Index> first(scene.cloths.size());
+  for (const WorldObject& object : world.objects)
+    if (object.cloth) first[static_cast<std::size_t>(object.source)] = object.first_vertex;
+  std::vector<std::array<Index, 2>> pairs;
+  for (const Seam& seam : scene.seams)
+    for (const auto& [a, b] : seam.pairs)
+      pairs.push_back({first[static_cast<std::size_t>(seam.from)] + a,
+                       first[static_cast<std::size_t>(seam.to)] + b});
+  return pairs;
+}
+
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene,
-               SceneOrigin origin)
-    : options_(options),
+int solver_threads(int asked, bool software) {
+  if (asked > 0) return asked;
+  const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return software ? std::max(1, all - 1) : all;
+}
+
+Viewer::Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
+               std::shared_ptr<const Scene> scene, SceneOrigin origin)
+    : window_(window),
+      ui_(ui),
+      options_(options),
       build_(build),
       scene_(std::move(scene)),
       world_(make_world(*scene_)),
@@ -63,12 +75,14 @@ Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Sc
       start_conflicts_(find_start_conflicts(*scene_, build != Build::cpu64)),
       start_remedies_(start_remedies(*scene_, start_conflicts_, build != Build::cpu64)),
       start_intersections_(face_pairs(start_conflicts_)),
-      window_("icloth - " + scene_->name, options.width, options.height),
-      ui_(window_),
+      gauge_(*scene_, world_),
+      stitches_(stitched_vertices(*scene_, world_)),
       renderer_(world_, {.on_device = options.vertices != "host"}),
       software_(gl_is_software()),
       threads_(solver_threads(options.simulation.threads, software_)),
       edits_(scene_->parameters) {
+  window_.set_title("icloth - " + scene_->name);
+
   // The parts follow the machine, then the scene and the options.
   set_thread_count(threads_);
   renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
@@ -79,13 +93,15 @@ Viewer::Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Sc
   if (options_.play) session_->play();
 }
 
-void Viewer::run() {
-  while (!window_.should_close()) frame();
+std::optional<std::string> Viewer::run() {
+  while (!window_.should_close() && state_.open_scene.empty()) frame();
 
   // The window goes first, since the step in progress may take a while.
-  window_.hide();
+  if (window_.should_close()) window_.hide();
   session_->stop();
   if (!options_.record_file.empty()) save_recording(session_->recording(), options_.record_file);
+  if (window_.should_close()) return std::nullopt;
+  return state_.open_scene;
 }
 
 void Viewer::frame() {
@@ -101,6 +117,8 @@ void Viewer::frame() {
   take_state();
   for (const WindowEvent& event : events) handle(event);
   hand_over();
+
+  measure_garments();
 
   // The panels may change parameters, which reach the solver with the same frame.
   ui_.begin_frame();
@@ -148,6 +166,15 @@ void Viewer::take_state() {
   }
 }
 
+/// Measures seams and strains of garments twice a second.
+void Viewer::measure_garments() {
+  constexpr double kInterval = 0.5;  // [s]
+  const double now = window_.seconds();
+  if (now - last_measured_ < kInterval) return;
+  last_measured_ = now;
+  garments_ = gauge_.measure(session_->state().positions);
+}
+
 /// Sends the changes that hands and panels made to the solver.
 void Viewer::hand_over() {
   for (const InputEvent& event : drag_.take_events()) session_->post(event);
@@ -176,6 +203,7 @@ void Viewer::draw_panels() {
                        .origin = origin_,
                        .start_conflicts = start_conflicts_,
                        .start_intersections = start_intersections_,
+                       .garments = garments_,
                        .ui = state_,
                        .scale = scale};
   if (state_.panels) draw_side_panel(context, {0, 0, side, high - bar});
@@ -231,6 +259,7 @@ void Viewer::draw_scene() {
   scene_frame.marked_faces = marked_faces_;
   scene_frame.marked_vertices = pins;
   scene_frame.hover = hover;
+  scene_frame.stitches = stitches_;
   scene_frame.view = state_.view;
   scene_frame.strain_range = kStrainRange;
 
@@ -244,35 +273,14 @@ void Viewer::draw_scene() {
 void Viewer::show_frame() {
   const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
   const double factor = static_cast<double>(width) / window_.width();
-  if (want_screenshot_) take_screenshot();
+  if (want_screenshot_)
+    tell(save_screenshot(window_, ui_, &picture_, view_.x, view_.height,
+                         options_.screenshot_folder));
+  want_screenshot_ = false;
   show_picture(picture_, 0, height, static_cast<int>(view_.x * factor), 0,
                static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
   ui_.paint(width, height, 0);
   window_.show();
-}
-
-/// Draws the frame once more into a picture of its own, since the window on the screen may be
-/// covered by other windows.
-void Viewer::take_screenshot() {
-  want_screenshot_ = false;
-  const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
-  Target target(Target::Kind::bytes);
-  target.resize(width, height);
-
-  clear_picture(target.framebuffer(), 0, 0, 0);
-  const double factor = static_cast<double>(width) / window_.width();
-  show_picture(picture_, target.framebuffer(), height, static_cast<int>(view_.x * factor), 0,
-               static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
-  ui_.paint(width, height, target.framebuffer());
-
-  // The user hears of a folder that cannot be written, and the window stays open.
-  const std::string path = free_name("icloth", ".png");
-  try {
-    write_png(path, read_picture(target));
-    tell("Picture saved to " + path);
-  } catch (const InputError& error) {
-    tell(error.what());
-  }
 }
 
 /// The handles as they are drawn: the user's at their present hit, and those of the script.
@@ -326,19 +334,6 @@ std::vector<Index> Viewer::failing_faces() const {
 void Viewer::tell(const std::string& note) {
   note_ = note;
   note_end_ = window_.seconds() + kNoteSeconds;
-}
-
-/// The first name of its kind that is not taken.
-std::string Viewer::free_name(const char* stem, const char* extension) const {
-  for (int k = 1;; ++k) {
-    char number[24];
-    std::snprintf(number, sizeof number, "_%04d", k);
-    const std::filesystem::path folder =
-        options_.screenshot_folder.empty() ? "." : options_.screenshot_folder;
-    const std::filesystem::path path = folder / (stem + std::string(number) + extension);
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) return path.lexically_normal().string();
-  }
 }
 
 /// The texts of the status bar.
@@ -406,6 +401,8 @@ TestStatus Viewer::test_status() const {
   for (const Handle& handle : drag_.handles()) status.parked += handle.parked;
   status.playing = state.playing;
   status.failed = state.failed;
+  status.body_speed = edits_.values().bodies.speed;
+  if (!garments_.empty()) status.garments = garment_text(total(garments_));
   status.notes = static_cast<int>(origin_.notes.size());
   status.panels = state_.panels;
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/garment_gauge.h"
 #include "app/session/session.h"
 #include "app/window/bindings.h"
 #include "app/window/drag.h"
@@ -28,16 +29,22 @@
 
 namespace icloth {
 
-/// Owns the window, the renderer and the session, and connects them.
+/// The number of threads of the solver. Software rendering needs a core for itself; a graphics card
+/// does not.
+int solver_threads(int asked, bool software);
+
+/// Owns the renderer and the session of one scene, and connects them with the window.
 class Viewer {
  public:
-  /// Opens the window and makes the solver of a build. Throws DeviceError and InputError.
-  /// `origin` is that of the scene: its notes are shown, and its numbers name vertices.
-  Viewer(const ViewOptions& options, Build build, std::shared_ptr<const Scene> scene,
-         SceneOrigin origin);
+  /// Makes the solver of a build. The window and its interface must outlive it. `origin` is that of
+  /// the scene: its notes are shown, and its numbers name vertices. Throws DeviceError and
+  /// InputError.
+  Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
+         std::shared_ptr<const Scene> scene, SceneOrigin origin);
 
-  /// Runs until the window is closed. Writes the recording when the options ask for it.
-  void run();
+  /// Runs until the window is closed or another scene is chosen, whose name it returns. Writes the
+  /// recording when the options ask for it.
+  std::optional<std::string> run();
 
  private:
   /// The motion of the camera while a button is held.
@@ -46,12 +53,12 @@ class Viewer {
   // One frame, in this order (viewer.cpp).
   void frame();
   void take_state();
+  void measure_garments();
   void hand_over();
   void draw_scene();
   bool time_to_draw();
   void draw_panels();
   void show_frame();
-  void take_screenshot();
 
   // Input (viewer_input.cpp).
   void handle(const WindowEvent& event);
@@ -84,11 +91,12 @@ class Viewer {
   void update_hover();
 
   void tell(const std::string& note);
-  std::string free_name(const char* stem, const char* extension) const;
   std::optional<Vec3d> graspable_point() const;
   StatusTexts status_texts() const;
   TestStatus test_status() const;
 
+  Window& window_;
+  Ui& ui_;
   ViewOptions options_;
   Build build_;
   std::shared_ptr<const Scene> scene_;
@@ -97,8 +105,10 @@ class Viewer {
   StartConflicts start_conflicts_;
   std::vector<std::string> start_remedies_;
   std::vector<IntersectingFaces> start_intersections_;  ///< the faces of the conflicts
-  Window window_;
-  Ui ui_;
+  GarmentGauge gauge_;
+  std::vector<GarmentState> garments_;  ///< measured now and then
+  double last_measured_ = -1;
+  std::vector<std::array<Index, 2>> stitches_;  ///< pairs of open seams, vertices of the world
   Renderer renderer_;
   Target picture_{Target::Kind::bytes};
   bool software_;  ///< OpenGL runs on the processor

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/common/camera_json.h"
+#include "app/window/screenshot.h"
 #include "app/window/viewer.h"
 #include "sim/files/box.h"
 
@@ -191,6 +192,11 @@ bool Viewer::act_on_session(Action action) {
       session_->state().playing ? session_->pause() : session_->play();
       return true;
 
+    case Action::hold_bodies: {
+      const ParameterInfo& speed = *find_parameter("bodies.speed");
+      edits_.set(speed, edits_.value(speed) > 0 ? 0 : 1);
+      return true;
+    }
     case Action::step:
       session_->step_once();
       return true;
@@ -213,8 +219,9 @@ bool Viewer::act_on_session(Action action) {
       return true;
 
     case Action::save_session:
-      session_->save(options_.record_file.empty() ? free_name("session", ".json")
-                                                  : options_.record_file);
+      session_->save(options_.record_file.empty()
+                         ? free_name(options_.screenshot_folder, "session", ".json")
+                         : options_.record_file);
       return true;
     default:
       return false;

@@ -100,6 +100,8 @@ bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
 void Window::request_close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
 
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
 void Window::add(WindowEvent event) {
   event.x = x_;
   event.y = y_;

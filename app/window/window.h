@@ -36,6 +36,7 @@ class Window : public GlContext {
   bool should_close() const;
   void request_close();
   void hide();
+  void set_title(const std::string& title);
   /// Handles the events that arrived and returns them.
   std::vector<WindowEvent> poll();
   /// Shows the frame, not more often than the display does.

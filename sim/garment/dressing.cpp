@@ -63,6 +63,7 @@ DressingRoom make_room(const Scene& scene, std::span<const std::size_t> on, std:
                        double contraction) {
   DressingRoom room{std::make_shared<Scene>(), {}, 0};
   room.scene->name = scene.name;
+  room.scene->cameras = scene.cameras;  // for whoever draws it
   room.scene->parameters = dressing_parameters(scene.parameters);
   for (const Obstacle& obstacle : scene.obstacles) {
     Obstacle still;

@@ -27,16 +27,16 @@ def skip(reason):
 class Window:
     """The program on a display of its own."""
 
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, scene=SCENE, variables=None):
         self.folder, self.seen = folder, []
         self.status_file = os.path.join(folder, "status.json")
         self.recording = os.path.join(folder, "session.json")
         self.server, display = self.start_server()
         self.environment = dict(os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
-                                ICLOTH_TEST_STATUS=self.status_file)
+                                ICLOTH_TEST_STATUS=self.status_file, **(variables or {}))
         self.log = open(os.path.join(folder, "icloth.log"), "w")
         self.process = subprocess.Popen(
-            [program, "view", *SCENE, "--device", "cpu", "--screenshots", folder, "--record",
+            [program, "view", *scene, "--device", "cpu", "--screenshots", folder, "--record",
              self.recording], env=self.environment, stdout=self.log, stderr=self.log)
         self.window = None
 
@@ -98,6 +98,9 @@ class Window:
 
     def wait_until_up(self):
         self.wait(lambda s: s["step"] >= 3, "the first steps", START_TIMEOUT)
+        self.find_window()
+
+    def find_window(self):
         self.window = self.xdotool("search", "--name", "icloth").split("\n")[0]
         assert self.window, "no window with the program's name"
 

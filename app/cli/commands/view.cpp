@@ -1,30 +1,110 @@
 #include "app/cli/commands/view.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
-#include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
+#include "app/window/start_screen.h"
 #include "app/window/viewer.h"
+#include "render/gl_context.h"
 #include "sim/files/error.h"
 #include "sim/garment/open_scene.h"
 
 namespace icloth {
+namespace {
+
+std::unique_ptr<SceneOpening> start_opening(const SimulationOptions& options) {
+  return std::make_unique<SceneOpening>([options](SceneOrigin& origin, const DressingWatch& watch) {
+    return open_scene(options.scene, scene_overrides(options), &origin, watch,
+                      scene_limits(options));
+  });
+}
+
+/// The options for another scene: what was said about the first one's parameters does not fit it.
+ViewOptions options_for(const ViewOptions& first, const std::string& scene) {
+  ViewOptions options = first;
+  options.simulation.scene = scene;
+  options.simulation.overrides.clear();
+  options.simulation.preset.clear();
+  options.simulation.repair_start = false;
+  return options;
+}
+
+/// One window, in which one scene after the other is opened.
+class WindowProgram {
+ public:
+  WindowProgram(const ViewOptions& options, Build build)
+      : first_(options),
+        build_(build),
+        window_("icloth", options.width, options.height),
+        ui_(window_),
+        screen_(window_, ui_, options.screenshot_folder) {
+    set_thread_count(solver_threads(options.simulation.threads, gl_is_software()));
+  }
+
+  /// Ends when the window is closed. Throws what opening the first scene throws; the others come
+  /// from the list of the window, which says what is wrong.
+  void run() {
+    std::optional<std::string> next = open(first_);
+    while (next) {
+      try {
+        next = open(options_for(first_, *next));
+      } catch (const InputError& error) {
+        next = screen_.choose(error.what());
+      }
+    }
+    window_.hide();
+    leave_abandoned();
+  }
+
+ private:
+  /// Opens a scene and runs it; returns the name of the next one, none where the window was closed.
+  std::optional<std::string> open(const ViewOptions& options) {
+    auto opening = start_opening(options.simulation);
+    const bool is_open = screen_.show(*opening, options.simulation.scene);
+    if (!is_open) {
+      abandoned_.push_back(std::move(opening));
+      if (window_.should_close()) return std::nullopt;
+      return screen_.choose("");
+    }
+
+    // The notes go to the terminal that the window was opened from, and into a panel.
+    const std::shared_ptr<const Scene> scene = opening->scene();
+    print_notes(opening->origin());
+    Viewer viewer(window_, ui_, options, build_, scene, std::move(opening->origin()));
+    return viewer.run();
+  }
+
+  /// A search for a start that nobody waits for any more ends with the program. It writes nothing
+  /// but the cache of drapes, whose files appear whole or not at all.
+  void leave_abandoned() const {
+    const auto is_busy = [](const auto& opening) { return !opening->done(); };
+    if (std::ranges::none_of(abandoned_, is_busy)) return;
+    std::fflush(nullptr);
+    std::_Exit(0);
+  }
+
+  ViewOptions first_;
+  Build build_;
+  Window window_;
+  Ui ui_;
+  StartScreen screen_;
+  std::vector<std::unique_ptr<SceneOpening>> abandoned_;  ///< that may still be at work
+};
+
+}  // namespace
 
 int run_view(const ViewOptions& options) {
-  const SimulationOptions& simulation = options.simulation;
-  const Build build = choose_build(simulation);
+  const Build build = choose_build(options.simulation);
   std::string reason;
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + " is not available: " + reason);
-
-  // The notes go to the terminal that the window was opened from, and into a panel.
-  SceneOrigin origin;
-  const std::shared_ptr<const Scene> scene =
-      open_scene(simulation.scene, scene_overrides(simulation), &origin,
-                 show_dressing(simulation.quiet), scene_limits(simulation));
-  print_notes(origin);
-  Viewer viewer(options, build, scene, std::move(origin));
-  viewer.run();
+  WindowProgram(options, build).run();
   return 0;
 }
 

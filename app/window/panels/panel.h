@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/garment_gauge.h"
 #include "app/session/session.h"
 #include "app/window/drag.h"
 #include "app/window/panels/stage_history.h"
@@ -36,6 +37,7 @@ struct UiState {
 
   bool show_failure = false;   ///< asked for: look at the offending faces
   bool save_session = false;   ///< asked for: write the recording
+  std::string open_scene;      ///< asked for: another scene; empty: none
   std::vector<Rect> overlays;  ///< floating panels of this frame: clicks there are theirs
 };
 
@@ -51,6 +53,7 @@ struct PanelContext {
   const SceneOrigin& origin;
   const StartConflicts& start_conflicts;
   const std::vector<IntersectingFaces>& start_intersections;  ///< the faces of the conflicts
+  const std::vector<GarmentState>& garments;                  ///< as they were measured last
   UiState& ui;
   float scale = 1;
 };
@@ -74,6 +77,10 @@ void draw_side_panel(PanelContext& context, const Rect& place);
 void draw_transport(PanelContext& context);
 /// Draws what the loader says about the input of the scene; nothing where it says nothing.
 void draw_notes(const PanelContext& context);
+/// Draw the clips of bodies with a switch to hold them, and the seams and strains of garments;
+/// nothing where the scene has none.
+void draw_bodies(PanelContext& context);
+void draw_garments(const PanelContext& context);
 void draw_stage_plot(PanelContext& context);
 void draw_parameters(PanelContext& context);
 void draw_statistics(PanelContext& context);

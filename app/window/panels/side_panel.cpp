@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/window/panels/panel.h"
+#include "app/window/scene_list.h"
 #include "app/window/theme.h"
 
 namespace icloth {
@@ -47,6 +48,18 @@ void draw_history(PanelContext& context) {
     back = 0;
   }
   ImGui::EndDisabled();
+}
+
+/// The name of the scene, which opens the list of the others.
+void draw_scene_menu(PanelContext& context) {
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
+  if (!ImGui::BeginCombo("##scene", shown(context.scene.name).c_str())) {
+    tooltip("Open another scene");
+    return;
+  }
+  for (const std::string& name : suggested_scenes())
+    if (ImGui::Selectable(name.c_str(), name == context.scene.source)) context.ui.open_scene = name;
+  ImGui::EndCombo();
 }
 
 }  // namespace
@@ -113,7 +126,7 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
 
   // The scene's name is on the left, the clock on the right.
-  ImGui::TextUnformatted(context.scene.name.c_str());
+  draw_scene_menu(context);
   char clock[64];
   std::snprintf(clock, sizeof clock, "%.2f s   step %lld", context.state.time,
                 static_cast<long long>(context.state.step));
@@ -123,6 +136,8 @@ void draw_side_panel(PanelContext& context, const Rect& place) {
 
   // The parts follow from top to bottom, and the tabs take the rest.
   draw_transport(context);
+  draw_bodies(context);
+  draw_garments(context);
   draw_notes(context);
   ImGui::Spacing();
   draw_stage_plot(context);

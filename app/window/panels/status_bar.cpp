@@ -97,6 +97,11 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
          context.state.playing ? colour::kText : colour::kChanged);
   }
 
+  if (!context.garments.empty()) {
+    const GarmentState all = total(context.garments);
+    item(garment_text(all).c_str(), all.open_pairs > 0 ? colour::kChanged : colour::kText);
+  }
+
   // The rest describes the drawing.
   std::snprintf(text, sizeof text, "window %.0f fps", texts.ui_fps);
   item(text);
