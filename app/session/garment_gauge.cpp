@@ -40,28 +40,36 @@ GarmentState total(std::span<const GarmentState> garments) {
 }
 
 GarmentGauge::GarmentGauge(const Scene& scene, const World& world) : world_(world) {
-  for (const Garment& garment : scene.garments) {
-    const Cloth& cloth = scene.cloths[at(garment.cloth)];
-    Gauge& gauge = gauges_.emplace_back();
-    gauge.fixed.name = cloth.name;
-    for (const SewnSeam& seam : garment.sewn.seams) gauge.fixed.pairs += seam.points.size();
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) add(scene, static_cast<Index>(c));
+}
 
-    // Cloth that is gathered is stretched by the pattern itself.
-    const std::vector<bool> gathered = gathered_faces(garment, cloth);
-    const std::size_t first = at(object_of(world, garment.cloth).first_face);
-    for (std::size_t f = 0; f < gathered.size(); ++f)
-      if (!gathered[f]) gauge.counted.push_back(first + f);
+/// Adds a gauge for a cloth that is a garment or has open seams; the seam between two cloths is
+/// that of the first.
+void GarmentGauge::add(const Scene& scene, Index cloth) {
+  const auto is_of_cloth = [&](const Garment& g) { return g.cloth == cloth; };
+  const auto garment = std::ranges::find_if(scene.garments, is_of_cloth);
+  const bool is_sewn = garment != scene.garments.end();
+  const WorldObject& object = object_of(world_, cloth);
+  Gauge gauge;
+  gauge.fixed.name = scene.cloths[at(cloth)].name;
+  if (is_sewn)
+    for (const SewnSeam& seam : garment->sewn.seams) gauge.fixed.pairs += seam.points.size();
+
+  // The pairs of open seams are followed one by one.
+  for (const Seam& seam : scene.seams) {
+    if (seam.from != cloth) continue;
+    const Index to = object_of(world_, seam.to).first_vertex;
+    for (const auto& [a, b] : seam.pairs) gauge.open.push_back({object.first_vertex + a, to + b});
   }
+  gauge.fixed.pairs += gauge.open.size();
+  if (gauge.fixed.pairs == 0) return;
 
-  // A seam that is open at the start belongs to the garment that it starts from.
-  for (const Seam& seam : scene.seams)
-    for (std::size_t g = 0; g < scene.garments.size(); ++g) {
-      if (scene.garments[g].cloth != seam.from) continue;
-      const Index from = object_of(world, seam.from).first_vertex;
-      const Index to = object_of(world, seam.to).first_vertex;
-      for (const auto& pair : seam.pairs) gauges_[g].open.push_back({from + pair[0], to + pair[1]});
-      gauges_[g].fixed.pairs += seam.pairs.size();
-    }
+  // Cloth that is gathered is stretched by the pattern itself.
+  const std::vector<bool> gathered = is_sewn ? gathered_faces(*garment, scene.cloths[at(cloth)])
+                                             : std::vector<bool>(at(object.face_count));
+  for (std::size_t f = 0; f < gathered.size(); ++f)
+    if (!gathered[f]) gauge.counted.push_back(at(object.first_face) + f);
+  gauges_.push_back(std::move(gauge));
 }
 
 std::vector<GarmentState> GarmentGauge::measure(std::span<const Vec3f> positions) const {

@@ -1,4 +1,5 @@
-// How the garments of a running scene are: whether their seams are shut, and how far they stretch.
+// How the sewn cloths of a running scene are: whether their seams are shut, and how far they
+// stretch.
 #pragma once
 
 #include <span>
@@ -42,8 +43,10 @@ class GarmentGauge {
     std::vector<std::size_t> counted;  ///< faces of the world outside gathers
   };
 
+  void add(const Scene& scene, Index cloth);
+
   const World& world_;
-  std::vector<Gauge> gauges_;  ///< one for each garment
+  std::vector<Gauge> gauges_;  ///< one for each cloth with stitches
 };
 
 }  // namespace icloth

@@ -116,8 +116,6 @@ TEST(GarmentGauge, MeasuresTheGapsOfOpenSeamsAndTheStretch) {
   cloth.mesh.faces = {{0, 1, 2}, {3, 4, 5}};
   cloth.rest = cloth.mesh.positions;
   scene.cloths.push_back(cloth);
-  scene.garments.emplace_back();
-  scene.garments[0].sewn.merged = {0, 1, 2, 3, 4, 5};
   scene.seams.push_back({"side", 0, 0, {{0, 3}, {2, 4}}, true});
   const World world = make_world(scene);
   const GarmentGauge gauge(scene, world);
