@@ -18,7 +18,7 @@ namespace icloth {
 namespace {
 
 constexpr const char* kVerb = "--icloth-read-body";
-constexpr std::uint64_t kLargestBody = std::uint64_t{1} << 32;  // [bytes]
+constexpr std::uint64_t kLargestBody = std::uint64_t{512} << 20;  // [bytes]
 
 bool is_served = false;  // main has called serve_body_reader
 

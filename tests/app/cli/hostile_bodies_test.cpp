@@ -153,8 +153,11 @@ TEST(HostileBodies, WhatIsNoFileIsRefusedAtOnce) {
   fs::create_symlink("/dev/zero", folder.path("zero.stl"));
   fs::create_symlink("round.dae", folder.path("round.dae"));
   fs::create_symlink("nothing", folder.path("dangling.dae"));
-  for (const char* name : {"pipe.glb", "pipe.obj", "folder.fbx", "zero.stl", "round.dae",
-                           "dangling.dae", "none.glb", "", ".", "/dev/stdin"})
+  std::ofstream(folder.path("hollow.fbx")).close();
+  fs::resize_file(folder.path("hollow.fbx"),
+                  std::uintmax_t{3} << 30);  // takes no place on the disk
+  for (const char* name : {"pipe.glb", "pipe.obj", "hollow.fbx", "folder.fbx", "zero.stl",
+                           "round.dae", "dangling.dae", "none.glb", "", ".", "/dev/stdin"})
     expect_refused(folder, name);
 }
 
