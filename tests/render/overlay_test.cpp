@@ -1,0 +1,28 @@
+// What is drawn over cloth and bodies.
+#include "render/overlay.h"
+
+#include <gtest/gtest.h>
+
+namespace icloth {
+namespace {
+
+TEST(Overlay, StitchesAreLinesUntilTheyAreShutAndRedderTheWiderTheyAre) {
+  const std::vector<Vec3f> positions = {{0, 0, 0}, {0, 0.1f, 0}, {0, 0.005f, 0}, {0, 0.0001f, 0}};
+  const World world;
+  Frame frame;
+  frame.positions = positions;
+  const auto drawn = [&](Index end) {
+    const std::array<Index, 2> pair{0, end};
+    frame.stitches = {&pair, 1};
+    return overlay_triangles(world, frame, Camera(), 600);
+  };
+  const auto wide = drawn(1), narrow = drawn(2), shut = drawn(3);
+  ASSERT_EQ(wide.size(), 6u);
+  ASSERT_EQ(narrow.size(), 6u);
+  EXPECT_EQ(shut.size(), 0u);
+  EXPECT_GT(wide[0].colour[0], narrow[0].colour[0]);
+  EXPECT_LT(wide[0].colour[1], narrow[0].colour[1]);
+}
+
+}  // namespace
+}  // namespace icloth
