@@ -215,6 +215,11 @@ void Commands::add_sew() {
   command->add_option("--out", sew.out, "OBJ of the garment, its uv the pattern in metres");
   command->add_option("--material", sew.material, "name or file of the fabric")
       ->capture_default_str();
+  command->add_option("--hold", sew.hold,
+                      "label of edges that keep their height until the garment settles");
+  command->add_option("--settling", sew.settling, "time with weight, in seconds")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
   command->add_option("--threads", sew.threads, "threads")->check(CLI::Range(1, 4096));
   command->add_flag("--report", sew.report, "print panels, stitches, and how dressing went");
   command->add_flag("!--no-dress", sew.dress, "write the garment as it is sewn");

@@ -30,6 +30,8 @@ Scene make_scene(const SewOptions& options, std::vector<std::string>& notes) {
   cloth.material = load_material(options.material, "");
   Garment garment = read_garment(options.pattern, options.triangles, notes);
   garment.plan.on = options.dress;
+  garment.plan.hold = options.hold;
+  garment.plan.settling = options.settling;
   sew_garment(garment, cloth);
   notes.insert(notes.end(), garment.sewn.notes.begin(), garment.sewn.notes.end());
   scene.cloths.push_back(std::move(cloth));

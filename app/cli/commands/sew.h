@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kernels/parallel/platform.h"
 
@@ -13,7 +14,9 @@ struct SewOptions {
   std::string out;      ///< OBJ of the garment, with its pattern as texture coordinates
   std::string material = "default";
   Index triangles = 4000;
-  int threads = 0;  ///< 0: all
+  std::vector<std::string> hold;  ///< labels of edges that keep their height until it settles
+  double settling = 0.5;          ///< time with weight [s]
+  int threads = 0;                ///< 0: all
   bool report = false;
   bool dress = true;  ///< false: the garment is written as it is sewn
   bool quiet = false;
