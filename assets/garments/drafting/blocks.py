@@ -3,7 +3,7 @@ import math
 
 from drafting.panel import Panel, solve
 
-ARM = math.sqrt(0.5)  # sine and cosine of the arms, which hang at 45 degrees
+ARM = 45  # of the arms below the level [degrees]
 
 
 def trunk_outline(panel, size, depth, hollow):
@@ -28,6 +28,21 @@ def trunk(name, size, depth, hollow):
     """A whole front or back."""
     panel = trunk_outline(Panel(name, (0, -size['length'])), size, depth, hollow)
     return panel.unfold()
+
+
+def bodice(name, size, depth, hollow):
+    """A front or back that ends at the waist, with a dart in each half."""
+    low = -size['length']
+    inner, outer = size['dart']
+    panel = Panel(name, (0, low))
+    panel.line('waist_half+', (inner, low), 'lower_interface')
+    panel.line('dart_in+', size['dart_top']).line('dart_out+', (outer, low))
+    panel.line('waist_side+', (size['waist'], low), 'lower_interface')
+    panel.line('side+', (size['chest'], -size['armhole']))
+    panel.bow('armhole+', size['shoulder'], .30, hollow)
+    panel.line('shoulder+', (size['neck'], 0))
+    panel.curve('neck+', (0, -depth), (.95 * size['neck'], -.95 * depth), label='collar')
+    return panel.unfold().join('waist_half-', 'waist_half+', 'waist_middle')
 
 
 def open_front(name, size, depth, hollow, gap):
@@ -56,11 +71,15 @@ def sleeve(name, armhole, half, length, wrist, ease=1.02):
     return panel.unfold()
 
 
-def place_sleeve(panel, shoulder, along, radius):
-    """Round the left arm: its widest line is `along` the arm from the joint of the shoulder."""
+def place_sleeve(panel, shoulder, along, radius, drop=0):
+    """Round the left arm: its widest line is `along` the arm from the joint of the shoulder. A long
+    sleeve hangs `drop` degrees steeper than the arm, so that its seam passes below the forearm."""
     x, y, z = shoulder
-    x, y = x + ARM * along, y - ARM * along
-    return panel.place((x + ARM * radius, y + ARM * radius, z), (0, 90, 45), radius)
+    c, s = math.cos(math.radians(ARM)), math.sin(math.radians(ARM))
+    x, y = x + c * along, y - s * along
+    turn = math.radians(ARM - drop)
+    return panel.place((x + math.cos(turn) * radius, y + math.sin(turn) * radius, z),
+                       (0, 90, ARM - drop), radius)
 
 
 def sew_trunk(pattern, front, back):
@@ -106,7 +125,7 @@ def gore(name, angle, inner, length, parts):
     return panel.line('seam-', panel.start)
 
 
-def band(name, top, bottom, height, parts=(('top', 1),), hem=(('hem', 1),)):
+def band(name, top, bottom, height, parts=(('top', 1),), hem=(('hem', 1),), label=None):
     """A trapezoid or rectangle; its upper border is divided into parts from x > 0 to x < 0, its
     lower one from x < 0 to x > 0."""
     panel = Panel(name, (-bottom / 2, -height))
@@ -118,17 +137,18 @@ def band(name, top, bottom, height, parts=(('top', 1),), hem=(('hem', 1),)):
     x = top / 2
     for part, share in parts:
         x -= share * top
-        panel.line(part, (x, 0))
+        panel.line(part, (x, 0), label)
     return panel.line('seam-', panel.start)
 
 
 HALVES = (('waist_a', .5), ('waist_b', .5))
 
 
-def place_round(panels, height, distance, radius=0):
-    """Four panels before, left of, behind and right of the body."""
+def place_round(panels, height, distance, spread=0):
+    """Four panels before, left of, behind and right of the body, whose lower ends stand out by an
+    angle of `spread` degrees."""
     for panel, (x, z, turn) in zip(panels, ((0, 1, 0), (1, 0, 90), (0, -1, 180), (-1, 0, -90))):
-        panel.place((x * distance, height, z * distance), (0, turn, 0), radius)
+        panel.place((x * distance, height, z * distance), (-spread, turn, 0))
 
 
 def sew_round(pattern, panels):

@@ -4,6 +4,7 @@ from drafting.panel import Pattern
 
 # Joint of the left shoulder, from which the arm hangs at 45 degrees.
 WOMAN_SHOULDER = (16.0, 137.6, -2.8)
+WAIST = 'lower_interface'  # edges that hang from the waist while a garment is put on
 DANCER_SHOULDER = (16.1, 139.6, -2.6)
 BOY_SHOULDER = (12.2, 106.7, -2.1)
 
@@ -54,4 +55,162 @@ def make_trousers(name, size, fork_height, front_at, back_at):
     return pattern
 
 
-GARMENTS = dict(tee=tee, trousers=trousers)
+def dress():
+    """A sleeveless bodice with darts, and a circle skirt of four gores."""
+    pattern = Pattern('dress')
+    # The waist of a skirt with an inner radius of 12 is 75.4 long; a dart takes 3 from each quarter.
+    size = dict(neck=9, shoulder=(18.6, -3.2), chest=24, armhole=22.5, waist=21.85, length=39.5,
+                dart=(9.42, 12.42), dart_top=(10.5, -28))
+    front = blocks.bodice('front', size, 10, .22)
+    back = blocks.bodice('back', size, 3, .18)
+    front.place((0, 147.5, 16), (0, 0, 0), 21)
+    back.place((0, 147.5, -19), (0, 180, 0), 21)
+    gores = skirt_gores(90, 12, 55)
+    blocks.place_round(gores, 115.5, 12, 50)
+    pattern.add(front, back, *gores)
+    blocks.sew_trunk(pattern, front, back)
+    for panel in front, back:
+        for sign in '+-':
+            pattern.sew(panel, 'dart_in' + sign, panel, 'dart_out' + sign)
+    blocks.sew_round(pattern, gores)
+    sew_to_quarters(pattern, front, back, 'waist_middle', 'waist_side', gores)
+    return pattern
+
+
+def skirt_gores(angle, inner, length):
+    """Gores before, left of, behind and right of the body; the waist of those at the sides is cut
+    in halves."""
+    return [blocks.gore(name, angle, inner, length, parts) for name, parts in (
+        ('skirt_front', (('waist', 1),)), ('skirt_left', blocks.HALVES),
+        ('skirt_back', (('waist', 1),)), ('skirt_right', blocks.HALVES))]
+
+
+def sew_to_quarters(pattern, front, back, middle, side, round_panels):
+    """Sews the lower border of a front and a back, each with a middle and two sides, to the upper
+    border of four panels: before, left, behind and right."""
+    before, left, behind, right = round_panels
+    pattern.sew(front, middle, before, 'waist')
+    pattern.sew(back, middle, behind, 'waist')
+    # From x > 0 to x < 0 of its own, the left panel goes from the back to the front.
+    pattern.sew(front, side + '+', left, 'waist_b')
+    pattern.sew(back, side + '-', left, 'waist_a')
+    pattern.sew(back, side + '+', right, 'waist_b')
+    pattern.sew(front, side + '-', right, 'waist_a')
+
+
+def tiered():
+    """A yoke and two gathered tiers, each a ring of four pieces and 1.39 times as long as what it
+    hangs from."""
+    pattern = Pattern('tiered')
+    quarters = (('hem_side-', .25), ('hem_middle', .5), ('hem_side+', .25))
+    front = blocks.band('yoke_front', 37.5, 52, 18, hem=quarters, label=WAIST)
+    back = blocks.band('yoke_back', 37.5, 52, 18, hem=quarters, label=WAIST)
+    front.place((0, 104, 16))
+    back.place((0, 104, -18), (0, 180, 0))
+    first, second = (tier(number, top, bottom, height)
+                     for number, top, bottom, height in ((1, 36, 36, 18), (2, 50, 50, 20)))
+    blocks.place_round(first, 85, 19, 6)
+    blocks.place_round(second, 66, 27, 6)
+    pattern.add(front, back, *first, *second)
+    pattern.sew(front, 'seam+', back, 'seam-')
+    pattern.sew(front, 'seam-', back, 'seam+')
+    blocks.sew_round(pattern, first)
+    blocks.sew_round(pattern, second)
+    sew_to_quarters(pattern, front, back, 'hem_middle', 'hem_side', first)
+    for upper, lower in zip(first, second):
+        for edge, other in zip(('hem',) if lower.has('waist') else ('hem_b', 'hem_a'),
+                               ('waist',) if lower.has('waist') else ('waist_a', 'waist_b')):
+            pattern.sew(upper, edge, lower, other)
+    return pattern
+
+
+def tier(number, top, bottom, height):
+    """A ring of four pieces; the borders of those at the sides are cut in halves."""
+    names = ['tier%d_%s' % (number, place) for place in ('front', 'left', 'back', 'right')]
+    halves = (('hem_a', .5), ('hem_b', .5))
+    return [blocks.band(name, top, bottom, height,
+                        parts=blocks.HALVES if k % 2 else (('waist', 1),),
+                        hem=halves if k % 2 else (('hem', 1),)) for k, name in enumerate(names)]
+
+
+def tank():
+    """A top without sleeves, to be worn with the tiered skirt."""
+    size = dict(neck=9, shoulder=(15.5, -2.2), chest=23.5, armhole=22.5, hem=25.5, length=52)
+    pattern = Pattern('tank')
+    front, back = blocks.trunk('front', size, 12, .28), blocks.trunk('back', size, 6, .26)
+    front.place((0, 147.5, 17), (0, 0, 0), 20)
+    back.place((0, 147.5, -21), (0, 180, 0), 20)
+    pattern.add(front, back)
+    blocks.sew_trunk(pattern, front, back)
+    return pattern
+
+
+def andy_shirt():
+    size = dict(neck=7.0, shoulder=(16.2, -2.5), chest=20.5, armhole=19, hem=21.5, length=45,
+                front_neck=7, back_neck=2)
+    return shirt('andy_shirt', size, BOY_SHOULDER, 114.5, 14, -17, 17,
+                 sleeve=(14.5, 30, 11.5), arm=(8.5, 5.3, 4))
+
+
+def andy_trousers():
+    size = dict(crotch=22, hip_at=13, knee_at=44, length=73,
+                front=dict(waist=16.7, hip=19, fork=4, knee=18, ankle=16, slant=0, **{'raise': 0}),
+                back=dict(waist=17.7, hip=20.5, fork=7, knee=20, ankle=18, slant=1, **{'raise': 1}))
+    return make_trousers('andy_trousers', size, 57.5, 12, -14)
+
+
+def andy_jacket():
+    """Open in front, over the shirt."""
+    size = dict(neck=8.0, shoulder=(17.5, -2.6), chest=23.5, armhole=21.5, hem=24.5, length=46,
+                front_neck=8, back_neck=2.2)
+    return open_jacket('andy_jacket', size, BOY_SHOULDER, 116, 17, -19, 19,
+                       sleeve=(16.5, 31, 13), arm=(9.5, 6.4, 4))
+
+
+def open_jacket(name, size, shoulder, neck_height, front_at, back_at, bend, sleeve=None, arm=None):
+    """Two fronts and a back; without `sleeve`, a vest."""
+    pattern = Pattern(name)
+    left = blocks.open_front('front_left', size, size['front_neck'], .24, 2)
+    back = blocks.trunk('back', size, size['back_neck'], .20)
+    left.place((0, neck_height, front_at), (0, 0, 0), bend)
+    back.place((0, neck_height, back_at), (0, 180, 0), bend)
+    right = left.mirror('front_right')
+    pattern.add(left, right, back)
+    for edge in 'side', 'shoulder':
+        pattern.sew(left, edge + '+', back, edge + '-')
+        pattern.sew(right, edge + '-', back, edge + '+')
+    if sleeve:
+        piece = blocks.sleeve('sleeve_left', blocks.armhole_length(left, back), *sleeve)
+        blocks.place_sleeve(piece, shoulder, *arm)
+        blocks.sew_sleeves(pattern, piece, (left, right), back)
+    return pattern
+
+
+def bishop_blouse():
+    """A shirt with long sleeves."""
+    size = dict(neck=8.3, shoulder=(20.4, -3.2), chest=24, armhole=23, hem=25.5, length=56,
+                front_neck=9, back_neck=2.5)
+    return shirt('bishop_blouse', size, DANCER_SHOULDER, 149.5, 17, -20, 20,
+                 sleeve=(18, 40, 14), arm=(10.5, 6.6, 4))
+
+
+def bishop_skirt():
+    """Three quarters of a circle, in four gores."""
+    pattern = Pattern('bishop_skirt')
+    gores = skirt_gores(67.5, 15.5, 60)
+    blocks.place_round(gores, 119, 9, 35)
+    pattern.add(*gores)
+    blocks.sew_round(pattern, gores)
+    return pattern
+
+
+def bishop_vest():
+    """Open in front, without sleeves, over the blouse."""
+    size = dict(neck=8.8, shoulder=(19.0, -3.0), chest=26, armhole=25, hem=27, length=50,
+                front_neck=22, back_neck=2.8)
+    return open_jacket('bishop_vest', size, DANCER_SHOULDER, 151, 20, -23, 22)
+
+
+GARMENTS = dict(tee=tee, trousers=trousers, dress=dress, tank=tank, tiered=tiered,
+                andy_shirt=andy_shirt, andy_trousers=andy_trousers, andy_jacket=andy_jacket,
+                bishop_blouse=bishop_blouse, bishop_skirt=bishop_skirt, bishop_vest=bishop_vest)

@@ -66,6 +66,15 @@ class Panel:
             self.edges.append(mirrored(edge, start))
         return self
 
+    def join(self, last, first, name):
+        """Makes one straight edge of the last one and of the first one, which continues it."""
+        if self.edges[-1].name != last or self.edges[0].name != first:
+            raise ValueError('panel %s does not start within a border' % self.name)
+        self.start = self.starts()[-1]
+        self.edges.pop()
+        self.edges[0].name = name
+        return self
+
     def mirror(self, name):
         """The panel of the other side, with its place."""
         starts = self.starts()
@@ -83,6 +92,9 @@ class Panel:
         if len(found) != 1:
             raise ValueError('panel %s has %d edges named %s' % (self.name, len(found), name))
         return found[0]
+
+    def has(self, name):
+        return any(edge.name == name for edge in self.edges)
 
     def length(self, name):
         k = self.index(name)
