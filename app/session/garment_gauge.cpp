@@ -79,6 +79,7 @@ std::vector<GarmentState> GarmentGauge::measure(std::span<const Vec3f> positions
   for (const Vec3f& p : positions.first(at(world_.cloth_vertices))) x.push_back(convert<double>(p));
   const std::vector<double> all = face_strains(world_, x);
 
+  // Each cloth with stitches has a state of its own.
   for (const Gauge& gauge : gauges_) {
     GarmentState& state = states.emplace_back(gauge.fixed);
     for (const Pair& pair : gauge.open) {

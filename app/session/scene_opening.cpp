@@ -36,11 +36,14 @@ void SceneOpening::run(const Open& open) {
 
 /// Publishes where the garment is, as often as a screen can show it.
 bool SceneOpening::watch(const Simulator& simulator, const DressingStatus& status) {
+  // Each garment is put on in a scene of its own, hence in another world.
   const bool is_new_garment = status.step == 1 && !status.settling;
   if (is_new_garment) {
     world_ = std::make_shared<const World>(make_world(simulator.scene()));
     cameras_ = simulator.scene().cameras;
   }
+
+  // Most steps are not seen, but each of them asks whether to go on.
   const Clock::time_point now = Clock::now();
   if (!is_new_garment && now - last_published_ < kPublishInterval) return !cancelled_;
   last_published_ = now;

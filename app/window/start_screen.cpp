@@ -46,7 +46,7 @@ std::string stage_of(const DressingPicture& picture, const std::string& name) {
 
 bool StartScreen::show(SceneOpening& opening, const std::string& name) {
   begin_ = window_.seconds();
-  cancelled_ = has_camera_ = has_picture_ = false;
+  cancelled_ = has_camera_ = has_picture_ = camera_moved_ = orbits_ = false;
   while (!opening.done()) {
     handle(window_.poll());
     if (window_.should_close() || cancelled_) break;
@@ -89,6 +89,8 @@ void StartScreen::take_picture(SceneOpening& opening) {
   const DressingPicture& picture = opening.picture();
   dirty_ = true;
   if (world_ == picture.world) return;
+
+  // A renderer belongs to one world, and goes before it.
   renderer_.reset();
   world_ = picture.world;
   renderer_ = std::make_unique<Renderer>(*world_, VertexOptions{.on_device = false});
@@ -109,6 +111,7 @@ void StartScreen::take_picture(SceneOpening& opening) {
 void StartScreen::handle(const std::vector<WindowEvent>& events) {
   using Kind = WindowEvent::Kind;
   for (const WindowEvent& event : events) {
+    // A press on the panel is for its button.
     const bool is_over_panel = ImGui::GetIO().WantCaptureMouse;
     if (event.kind == Kind::key) {
       const Action action =
@@ -116,17 +119,19 @@ void StartScreen::handle(const std::vector<WindowEvent>& events) {
       cancelled_ = cancelled_ || action == Action::cancel;
       want_screenshot_ = want_screenshot_ || action == Action::screenshot;
       if (action == Action::quit) window_.request_close();
-    } else if (event.kind == Kind::press && !is_over_panel) {
+    } else if (event.kind == Kind::press && has_camera_ && !is_over_panel) {
       orbits_ = true;
     } else if (event.kind == Kind::release) {
       orbits_ = false;
     } else if (event.kind == Kind::move && orbits_) {
       camera_.orbit(event.x - x_, event.y - y_, window_.height());
-      dirty_ = true;
-    } else if (event.kind == Kind::wheel && !is_over_panel) {
+      dirty_ = camera_moved_ = true;
+    } else if (event.kind == Kind::wheel && has_camera_ && !is_over_panel) {
       camera_.dolly(std::pow(kDollyPerNotch, event.amount));
-      dirty_ = true;
+      dirty_ = camera_moved_ = true;
     }
+
+    // Drags are measured from one event to the next.
     x_ = event.x;
     y_ = event.y;
   }

@@ -25,6 +25,9 @@ class StartScreen {
   /// want to wait, or has closed the window.
   bool show(SceneOpening& opening, const std::string& name);
 
+  /// The camera that the user turned meanwhile; null: it is still that of the scene.
+  const Camera* chosen_camera() const { return camera_moved_ ? &camera_ : nullptr; }
+
   /// Asks for one of the built-in scenes; `problem`: why the last one is not there, may be empty.
   /// None: the window was closed.
   std::optional<std::string> choose(const std::string& problem);
@@ -48,8 +51,9 @@ class StartScreen {
   bool has_camera_ = false, has_picture_ = false, dirty_ = false;
   bool want_screenshot_ = false;
   bool cancelled_ = false;  ///< by the button or by Esc
-  bool orbits_ = false;     ///< a button is down over the picture
-  double x_ = 0, y_ = 0;    ///< pointer
+  bool camera_moved_ = false;
+  bool orbits_ = false;   ///< a button is down over the picture
+  double x_ = 0, y_ = 0;  ///< pointer
   double begin_ = 0, draw_seconds_ = 0, draw_end_ = 0, last_status_ = -1;
   std::optional<std::string> chosen_;
   TestStatusFile test_file_;

@@ -42,6 +42,8 @@ class Viewer {
   Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
          std::shared_ptr<const Scene> scene, SceneOrigin origin);
 
+  void look_from(const Camera& camera) { camera_ = camera; }
+
   /// Runs until the window is closed or another scene is chosen, whose name it returns. Writes the
   /// recording when the options ask for it.
   std::optional<std::string> run();

@@ -113,12 +113,16 @@ void check_orthotropic(const JsonValue& where, const Material& material) {
 Material parse(const nlohmann::json& json, const std::string& where, const Source& source) {
   JsonObject object(JsonValue(json, where));
   Material material;
+
+  // What a material does not say itself is that of its base.
   const bool has_base = object.has("base");
   if (has_base) {
     const JsonValue base = object["base"];
     if (source.depth >= kMaxBases) base.refuse("a material whose bases come to an end");
     material = load(base.text(), base.where(), {source.folder, source.scope, source.depth + 1});
   }
+
+  // The texts are for readers, apart from the name and the law.
   material.name = object.text("name", material.name);
   object.text("description", "");
   object.text("source", "");
@@ -128,6 +132,9 @@ Material parse(const nlohmann::json& json, const std::string& where, const Sourc
       object["law"].refuse("\"measured\" or \"orthotropic\"");
     material.law = law == "measured" ? Material::Law::measured : Material::Law::orthotropic;
   }
+
+  // Density and damping, then the constants of an orthotropic fabric or the tables of a measured
+  // one.
   if (object.has("density") || !has_base)
     material.density = object.required("density").number({1e-3, 100});
   material.damping = object.number("damping", material.damping, {0, 10});
@@ -137,6 +144,8 @@ Material parse(const nlohmann::json& json, const std::string& where, const Sourc
       if (object.has(key)) object[key].refuse("no such key beside \"orthotropic\"");
     read_orthotropic(object["orthotropic"], material);
   }
+
+  // Tables stand in the place of constants, and a fabric without either has those of its base.
   if (object.has("stretching") || !(has_base || constants))
     read_stretching(object.required("stretching"), material);
   const double unit = object.number("bending_unit", 1, kPositive);
@@ -144,6 +153,8 @@ Material parse(const nlohmann::json& json, const std::string& where, const Sourc
     read_bending(object.required("bending"), unit, material);
     material.bending_spacing = Material{}.bending_spacing;  // not that of the base's samples
   }
+
+  // The rest may be said in addition to any of these.
   material.bending_spacing = object.number("bending_spacing", material.bending_spacing, {0.1, 1e4});
   material.bending_poisson =
       object.number("bending_poisson", material.bending_poisson, {-0.95, 0.95});

@@ -77,6 +77,7 @@ class WindowProgram {
     const std::shared_ptr<const Scene> scene = opening->scene();
     print_notes(opening->origin());
     Viewer viewer(window_, ui_, options, build_, scene, std::move(opening->origin()));
+    if (const Camera* camera = screen_.chosen_camera()) viewer.look_from(*camera);
     return viewer.run();
   }
 

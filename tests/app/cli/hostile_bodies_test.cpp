@@ -52,6 +52,8 @@ Outcome run(const TemporaryFolder& folder, const std::string& scene, int steps =
   std::string words[] = {"timeout",  "60",      ICLOTH_PROGRAM,        "run",
                          scene,      "--steps", std::to_string(steps), "--quiet",
                          "--device", "cpu"};
+
+  // posix_spawn takes its words as char*.
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -168,6 +170,8 @@ TEST(HostileBodies, BuffersElsewhereAreNotOpened) {
   Json text = make_gltf({}, data);
   folder.write("outside.bin", data);
   folder.write("below/inside.bin", data);
+
+  // The same buffer is inside and outside, and there are several ways to what is not a file.
   ASSERT_EQ(mkfifo(folder.path("below/pipe.bin").c_str(), 0600), 0);
   fs::create_symlink(folder.path("outside.bin"), folder.path("below/link.bin"));
   fs::create_directory_symlink(folder.path(""), folder.path("below/shelf"));
@@ -176,6 +180,8 @@ TEST(HostileBodies, BuffersElsewhereAreNotOpened) {
     text["buffers"][0]["uri"] = uri;
     folder.write("below/a.gltf", text.dump());
   };
+
+  // The good one comes last, as the control.
   for (const std::string& uri :
        {std::string("../outside.bin"), folder.path("outside.bin"), std::string("link.bin"),
         std::string("shelf/outside.bin"), std::string("pipe.bin"), std::string("zero.bin"),
