@@ -93,8 +93,10 @@ class Decoder {
     require(length <= rest_.size());
     const auto head = nlohmann::json::parse(rest_.substr(0, length), nullptr, false);
     rest_.remove_prefix(length);
-    if (head.is_object() && head.contains("error") && head["error"].is_string())
+    if (head.is_object() && head.contains("error") && head["error"].is_string()) {
+      require(!head["error"].get_ref<const std::string&>().empty());
       throw InputError(head["error"].get<std::string>());
+    }
     Body body = body_of(JsonValue(head, shown_path(path_)));
 
     // Each array is checked against those before it.

@@ -60,6 +60,7 @@ NAN, HUGE = float("nan"), 1e9
 LARGE = [HUGE if k in (0, 5, 10) else 0 for k in range(12)]
 REGRESSIONS = {
     "bad_error": head({"error": "the file is broken"}),
+    "bad_empty_error": head({"error": ""}),
     "bad_nan_position": body(positions=[0, NAN, 0, 1, 0, 0, 0, 1, 0]),
     "bad_nan_move": body([WALK], rig(), keys=clip(move=(NAN, 1, 0))),
     "bad_nan_turn": body([WALK], rig(), keys=clip(turn=(NAN, 1, 0, 0))),
