@@ -11,7 +11,8 @@ std::vector<std::string> suggested_scenes() {
   std::istringstream words(asset_names("scenes"));
   std::vector<std::string> names;
   for (std::string name; words >> name;) names.push_back(name);
-  std::ranges::stable_partition(names, [](const std::string& name) { return name == "dressed"; });
+  std::stable_partition(names.begin(), names.end(),
+                        [](const std::string& name) { return name == "dressed"; });
   return names;
 }
 
