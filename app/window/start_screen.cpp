@@ -207,6 +207,10 @@ void StartScreen::show_frame() {
   if (has_picture_) show_picture(picture_, 0, height, 0, 0, width, height);
   ui_.paint(width, height, 0);
   window_.show();
+
+  const double now = window_.seconds();
+  frame_times_.push_back(now);
+  while (now - frame_times_.front() > 1) frame_times_.pop_front();
 }
 
 /// One line a second for the tests of the window.
@@ -217,6 +221,7 @@ void StartScreen::write_status(const char* phase, int dressing_step) {
   TestStatus status;
   status.phase = phase;
   status.dressing_step = dressing_step;
+  status.ui_fps = static_cast<double>(frame_times_.size());
   test_file_.write(status);
 }
 

@@ -1,6 +1,7 @@
 // The window before a simulation runs in it: a scene is being opened, or one is to be chosen.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,6 +56,7 @@ class StartScreen {
   bool orbits_ = false;   ///< a button is down over the picture
   double x_ = 0, y_ = 0;  ///< pointer
   double begin_ = 0, draw_seconds_ = 0, draw_end_ = 0, last_status_ = -1;
+  std::deque<double> frame_times_;  ///< of the last second
   std::optional<std::string> chosen_;
   TestStatusFile test_file_;
 };
