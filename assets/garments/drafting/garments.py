@@ -27,7 +27,7 @@ def shirt(name, size, shoulder, neck_height, front_at, back_at, bend, sleeve, ar
 def tee():
     size = dict(neck=8.5, shoulder=(20.8, -3.2), chest=24.5, armhole=23.5, hem=26, length=58,
                 front_neck=9, back_neck=2.5)
-    return shirt('tee', size, WOMAN_SHOULDER, 147.5, 17, -21, 20,
+    return shirt('tee', size, WOMAN_SHOULDER, 147.5, 17, -21, 22.5,
                  sleeve=(18.5, 13, 17.5), arm=(10.5, 6.6))
 
 
