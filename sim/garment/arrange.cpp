@@ -153,7 +153,10 @@ class BestStart {
   /// Moves panels among bodies that are contracted so far [m]: all of them together, or also each
   /// group of its own (`apart`).
   void search(double contraction, bool apart) {
-    const FixedFaces around(still_scene(scene_, on_, contraction));
+    // Where a body is hollow its contraction fills it, which may reach a garment that is on.
+    const Scene still = still_scene(scene_, on_, contraction);
+    if (contraction > 0 && !find_start_intersections(still, true).empty()) return;
+    const FixedFaces around(still);
     StartTrial trial(scene_, number_, around);
     StandSearch search(trial, panels_);
     if (result_.checks == 0) result_.pairs_before = search.left().size();

@@ -59,6 +59,7 @@ TrialZone make_zone(Index side) {
       for (int a = 0; a < 4; ++a) c.slot.v[a] = c.s.v[a];
       c.normal =
           convert<Real>(normalized(Vec3d{tilt * (uniform() - 0.5), 1, tilt * (uniform() - 0.5)}));
+      c.offset = static_cast<Real>(Parameters{}.impact_zones.offset);
       zone.constraint.push_back(c);
       zone.slot.push_back(c.slot);
     }

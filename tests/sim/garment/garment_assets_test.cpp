@@ -61,11 +61,13 @@ INSTANTIATE_TEST_SUITE_P(All, GarmentAsset, ::testing::ValuesIn(kDesigns),
                          [](const auto& param) { return std::string(param.param.name); });
 
 TEST(DressedScene, StartsWornAndDancesWithoutARefusedStep) {
-  // Coarser than in the scene itself, and not from a cache that an earlier run may have left.
+  // Coarser than in the scene itself, and not from a cache that an earlier run may have left. Still
+  // coarser faces cut through the hips, and the search of a start lowers the trousers. At this
+  // number a contracted body, which the T-shirt would start around, reaches the trousers.
   const TemporaryFolder folder;
   setenv("XDG_CACHE_HOME", folder.path("cache").c_str(), 1);
   SceneOrigin origin;
-  const auto scene = open_scene("dressed", std::vector<std::string>{"triangles=1200"}, &origin);
+  const auto scene = open_scene("dressed", std::vector<std::string>{"triangles=2400"}, &origin);
   for (const std::string& note : origin.notes)
     EXPECT_EQ(note.find("cannot be put on"), std::string::npos) << note;
   ASSERT_EQ(scene->garments.size(), 2u);
