@@ -215,6 +215,8 @@ void Commands::add_sew() {
   command->add_option("--out", sew.out, "OBJ of the garment, its uv the pattern in metres");
   command->add_option("--material", sew.material, "name or file of the fabric")
       ->capture_default_str();
+
+  // How it is put on, and what is told of that.
   command->add_option("--hold", sew.hold,
                       "label of edges that keep their height until the garment settles");
   command->add_option("--settling", sew.settling, "time with weight, in seconds")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <span>
 
 #include "app/common/element_names.h"
 #include "app/common/machine.h"
@@ -71,12 +72,14 @@ void apply_parameters(Simulator& simulator, const Recording::Step& input) {
   simulator.set_parameters(parameters);
 }
 
-}  // namespace
-
-void print_notes(const SceneOrigin& origin) {
-  for (const std::string& note : origin.notes)
+void print_notes(std::span<const std::string> notes) {
+  for (const std::string& note : notes)
     std::fprintf(stderr, "icloth: note: %s\n", one_line(note).c_str());
 }
+
+}  // namespace
+
+void print_notes(const SceneOrigin& origin) { print_notes(origin.notes); }
 
 std::size_t count_penetrations(const Simulator& simulator) {
   const Scene& scene = simulator.sewn_scene();
@@ -136,9 +139,9 @@ HeadlessResult run_headless(const HeadlessJob& job) {
       return result;
     }
 
-    for (const std::string& note : report.notes) {
+    if (!job.quiet && !report.notes.empty()) {
       progress.finish();
-      std::fprintf(stderr, "icloth: note: %s\n", one_line(note).c_str());
+      print_notes(report.notes);
     }
 
     // A refused step is reported, and ends the run or is passed over.

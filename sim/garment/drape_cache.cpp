@@ -99,6 +99,9 @@ void add_garment(Fingerprint& print, const Garment& garment) {
   print.add(garment.plan.closing);
   print.add(garment.plan.settling);
   print.add(garment.plan.hold);
+
+  // The pattern is known by its meshed panels and where they stand. What sews them together is in
+  // the faces of the cloth.
   for (const PanelPlacement& p : garment.placements) {
     print.add(p.translation);
     print.add(p.rotation);
