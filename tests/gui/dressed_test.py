@@ -4,14 +4,12 @@ cancels it, holds the dancing body, and pulls the cloth while it dances.
 Usage: dressed_test.py ICLOTH [OUTPUT_FOLDER]. Exit code 77: a tool or OpenGL is missing."""
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from gui_test import LOWEST_FPS, Window, drag, skip  # noqa: E402
+from gui_test import LOWEST_FPS, Window, drag, prepare  # noqa: E402
 
 SCENE = ["dressed", "--set", "triangles=2500"]
 DRESS_TIMEOUT = 300   # [s] on two busy cores
@@ -106,13 +104,7 @@ def check_end(window, program):
 
 
 def main():
-    for tool in ("Xvfb", "xdotool"):
-        if not shutil.which(tool):
-            skip(f"{tool} is not installed")
-    program = sys.argv[1]
-    folder = sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp(prefix="icloth_dressed_")
-    shutil.rmtree(folder, ignore_errors=True)
-    os.makedirs(folder)
+    program, folder = prepare("icloth_dressed_")
     check_cancel(program, folder)
     window = open_window(program, folder, "run", os.path.join(folder, "cache"))
     try:

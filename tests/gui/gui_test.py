@@ -209,14 +209,19 @@ def check_no_display(program):
     assert "display" in done.stderr, done.stderr
 
 
-def main():
+def prepare(prefix):
+    """The program and an empty folder for its files; skips the test where a tool is missing."""
     for tool in ("Xvfb", "xdotool"):
         if not shutil.which(tool):
             skip(f"{tool} is not installed")
-    program = sys.argv[1]
-    folder = sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp(prefix="icloth_gui_")
+    folder = sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp(prefix=prefix)
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
+    return sys.argv[1], folder
+
+
+def main():
+    program, folder = prepare("icloth_gui_")
     check_no_display(program)
     window = Window(program, folder)
     try:
