@@ -1,153 +1,25 @@
 #include "sim/sewing_simulator.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <set>
 
 #include "kernels/index.h"
-#include "sim/collision/detect.h"
 #include "sim/files/error.h"
 #include "sim/files/text.h"
-#include "sim/scene/intersections.h"
-#include "sim/scene/scene_meshes.h"
+#include "sim/weld_memory.h"
 
 namespace icloth {
 namespace {
 
 constexpr Index kFirstDelay = 10, kLongestDelay = 640;  // steps after a weld that failed
 
-// Keys of pairs, as in kernels/stencil.h.
-constexpr std::uint64_t kEdgeBit = std::uint64_t{1} << 63, kHalf = (std::uint64_t{1} << 31) - 1;
-
-/// Where merged vertices meet: halfway between them, or where a held one stays. Places are those
-/// that the build can tell apart.
-std::vector<Vec3d> merged_positions(const Snapshot& state, const World& before,
-                                    const WeldedScene& welded, std::size_t vertices,
-                                    bool single_precision) {
-  std::vector<Vec3d> sum(vertices);
-  std::vector<double> count(vertices);
-  std::vector<bool> held(vertices);
-  for (std::size_t v = 0; v < state.x1.size(); ++v) {
-    const std::size_t to = at(welded.vertex[v]);
-    const bool pinned = v < before.pinned.size() && before.pinned[v] != 0;
-    if (held[to]) continue;
-    if (pinned) sum[to] = {}, count[to] = 0;
-    held[to] = pinned;
-    sum[to] += state.x1[v];
-    ++count[to];
-  }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (count[v] == 1) continue;
-    sum[v] = (1 / count[v]) * sum[v];
-    if (single_precision) sum[v] = convert<double>(convert<float>(sum[v]));
-  }
-  return sum;
-}
-
-/// Whether the small move of the welded vertices lets nothing pass through anything. Elements that
-/// have a vertex in common afterwards meet there, and bodies may touch each other.
-bool moves_freely(const Snapshot& state, const World& before, const WeldedScene& welded,
-                  const std::vector<Vec3d>& merged) {
-  std::vector<Vec3d> end;
-  for (const Index v : welded.vertex) end.push_back(merged[at(v)]);
-  const Collisions found = cpu64::detect_collisions(state.x1, end, before.face);
-
-  const auto matters = [&](std::span<const Index> first, std::span<const Index> second) {
-    bool cloth = false;
-    for (const Index a : first) {
-      cloth = cloth || a < before.cloth_vertices;
-      for (const Index b : second) {
-        cloth = cloth || b < before.cloth_vertices;
-        if (welded.vertex[at(a)] == welded.vertex[at(b)]) return false;
-      }
-    }
-    return cloth;
-  };
-  for (const auto& [vertex, face] : found.vertex_face)
-    if (matters({&vertex, 1}, before.face[at(face)])) return false;
-  for (const auto& v : found.edge_edge)
-    if (matters({v.data(), 2}, {v.data() + 2, 2})) return false;
-  return true;
-}
-
-bool intersects(const Scene& scene, const std::vector<Vec3d>& positions) {
-  const SceneFaces soup = scene_faces(scene);
-  return !find_intersections(positions, soup.faces, soup.group).empty();
-}
-
-/// Edge numbers of the world after a weld for those before it.
-class NewKeys {
- public:
-  NewKeys(const World& before, const WeldedScene& welded, const World& after)
-      : before_(before), welded_(welded) {
-    for (std::size_t e = 0; e < after.edge.size(); ++e)
-      edge_[after.edge[e]] = static_cast<std::uint64_t>(e);
-  }
-
-  std::uint64_t of(std::uint64_t key) const {
-    const std::uint64_t a = (key >> 31) & kHalf, b = key & kHalf;
-    if ((key & kEdgeBit) == 0)
-      return (static_cast<std::uint64_t>(welded_.vertex[static_cast<std::size_t>(a)]) << 31) | b;
-    const std::uint64_t first = edge(a), second = edge(b);
-    return kEdgeBit | (std::min(first, second) << 31) | std::max(first, second);
-  }
-
- private:
-  std::uint64_t edge(std::uint64_t old) const {
-    const auto& e = before_.edge[static_cast<std::size_t>(old)];
-    const Index a = welded_.vertex[at(e[0])], b = welded_.vertex[at(e[1])];
-    return edge_.at({std::min(a, b), std::max(a, b)});
-  }
-
-  const World& before_;
-  const WeldedScene& welded_;
-  std::map<std::array<Index, 2>, std::uint64_t> edge_;
-};
-
-/// Means of merged vertices weighted with mass; obstacles keep what they have.
-std::vector<Vec3d> weighted_means(const std::vector<Vec3d>& values, const World& before,
-                                  const WeldedScene& welded, std::size_t count) {
-  std::vector<Vec3d> sum(count);
-  std::vector<double> mass(count);
-  for (std::size_t v = 0; v < values.size(); ++v) {
-    const double m = v < before.mass.size() ? before.mass[v] : 1.0;
-    sum[at(welded.vertex[v])] += m * values[v];
-    mass[at(welded.vertex[v])] += m;
-  }
-  for (std::size_t v = 0; v < count; ++v) sum[v] = (1 / mass[v]) * sum[v];
-  return sum;
-}
-
-/// A hand holds merged vertices once, with the sum of their shares.
-void follow_hand(HeldPatch& hand, const WeldedScene& welded) {
-  for (Index& corner : hand.corners) corner = welded.vertex[at(corner)];
-  HeldPatch merged = hand;
-  merged.vertices.clear(), merged.share.clear(), merged.offset.clear();
-  for (std::size_t i = 0; i < hand.vertices.size(); ++i) {
-    const Index v = welded.vertex[at(hand.vertices[i])];
-    const auto known = std::ranges::find(merged.vertices, v);
-    if (known == merged.vertices.end()) {
-      merged.vertices.push_back(v);
-      merged.share.push_back(hand.share[i]);
-      merged.offset.push_back(hand.offset[i]);
-      continue;
-    }
-    const auto k = static_cast<std::size_t>(known - merged.vertices.begin());
-    const double sum = merged.share[k] + hand.share[i];
-    if (sum > 0)
-      merged.offset[k] =
-          (1 / sum) * (merged.share[k] * merged.offset[k] + hand.share[i] * hand.offset[i]);
-    merged.share[k] = sum;
-  }
-  hand = std::move(merged);
-}
-
 /// Whether the straight way from a to b goes through a triangle.
 bool crosses(Vec3d a, Vec3d b, Vec3d p, Vec3d q, Vec3d r) {
   const Vec3d d = b - a, n = cross(q - p, r - p);
   const double along = dot(d, n);
   if (along == 0) return false;
+
+  // The way meets the plane of the triangle, at a place inside all three edges.
   const double t = dot(p - a, n) / along;
   if (!(t > 0 && t < 1)) return false;
   const Vec3d at_plane = a + t * d;
@@ -155,55 +27,35 @@ bool crosses(Vec3d a, Vec3d b, Vec3d p, Vec3d q, Vec3d r) {
   return side(p, q) >= 0 && side(q, r) >= 0 && side(r, p) >= 0;
 }
 
-}  // namespace
-
-Snapshot weld_memory(const Snapshot& state, const World& before, const WeldedScene& welded,
-                     const World& after, const std::vector<Vec3d>& positions) {
-  Snapshot s = state;
-  const auto vertices = at(after.vertices), cloth = at(after.cloth_vertices);
-  s.x1 = positions;
-  s.v = weighted_means(state.v, before, welded, vertices);
-  if (!state.past.motion.empty()) {
-    s.past.motion = weighted_means(state.past.motion, before, welded, cloth);
-    s.past.change = weighted_means(state.past.change, before, welded, cloth);
+/// "obstacle 'ball' and cloth 'coat'": what the straight way between the ends of a pair goes
+/// through; empty where that is nothing.
+std::string names_between(const StitchedPair& pair, const World& world,
+                          const std::vector<Vec3d>& x) {
+  std::set<std::string> between;
+  for (const Triangle& t : world.face) {
+    const auto is_end = [&](Index v) { return v == pair.a || v == pair.b; };
+    if (std::ranges::any_of(t, is_end)) continue;
+    if (!crosses(x[at(pair.a)], x[at(pair.b)], x[at(t[0])], x[at(t[1])], x[at(t[2])])) continue;
+    const WorldObject& object = world.objects[at(world.object[at(t[0])])];
+    between.insert((object.cloth ? "cloth " : "obstacle ") + in_quotes(object.name));
   }
 
-  // Contacts keep their friction under the new numbers of their elements.
-  const NewKeys keys(before, welded, after);
-  for (auto& held : s.held) held.key = keys.of(held.key);
-  std::ranges::sort(s.held, {}, [](const auto& held) { return held.key; });
-  const auto same = [](const auto& a, const auto& b) { return a.key == b.key; };
-  s.held.erase(std::unique(s.held.begin(), s.held.end(), same), s.held.end());
-
-  // Gaps of merged vertices are the smaller ones; the candidate lists have to be made anew.
-  if (!state.start_gap.empty()) {
-    s.start_gap.assign(cloth, 1e30);
-    for (std::size_t v = 0; v < state.start_gap.size(); ++v) {
-      double& gap = s.start_gap[at(welded.vertex[v])];
-      gap = std::min(gap, state.start_gap[v]);
-    }
-  }
-  s.trusted.clear();
-  s.trusted_complete = false;
-
-  for (LetGo& entry : s.let_go) entry.vertex = welded.vertex[at(entry.vertex)];
-  const auto order = [](const LetGo& e) { return std::pair(e.vertex, e.body); };
-  std::ranges::sort(s.let_go, {}, order);
-  const auto again = [&](const LetGo& a, const LetGo& b) { return order(a) == order(b); };
-  s.let_go.erase(std::unique(s.let_go.begin(), s.let_go.end(), again), s.let_go.end());
-
-  s.stitches.clear();
-  for (const Index pair : welded.pairs) s.stitches.push_back(state.stitches[at(pair)]);
-  for (HeldPatch& hand : s.hands) follow_hand(hand, welded);
-  return s;
+  std::string names;
+  for (const std::string& name : between) names += (names.empty() ? "" : " and ") + name;
+  return names;
 }
+
+std::string seconds_text(double time) { return rounded_text(time, 6) + " s"; }
+
+}  // namespace
 
 SewingSimulator::SewingSimulator(Build build, std::shared_ptr<const Scene> scene, MakeSolver make)
     : build_(build),
       make_(make),
       scene_(std::move(scene)),
       progress_(scene_->seams.size()),
-      named_(scene_->seams.size()) {
+      told_closed_(scene_->seams.size()),
+      told_stuck_(scene_->seams.size()) {
   start_again();
 }
 
@@ -228,32 +80,37 @@ void SewingSimulator::take(WeldedScene welded, std::unique_ptr<Simulator> solver
 }
 
 /// Whether all pairs of a seam are near enough to be welded.
-bool SewingSimulator::is_closed(const Seam& seam, const std::vector<Vec3f>& x) const {
+bool SewingSimulator::is_closed(const Seam& seam) const {
   const double most = weld_tolerance(world_.median_edge);
   const Index from = world_.objects[at(seam.from)].first_vertex;
   const Index to = world_.objects[at(seam.to)].first_vertex;
+  std::vector<Vec3f> x;
+  solver_->positions(x);
   return std::ranges::all_of(seam.pairs, [&](const auto& p) {
     return norm(convert<double>(x[at(from + p[0])] - x[at(to + p[1])])) < most;
   });
 }
 
 /// Moves both sides of a seam together and goes on with the welded cloth; false where something is
-/// in the way.
-bool SewingSimulator::weld(std::size_t seam) {
+/// in the way. The report then tells of the welded cloth, and its energy balance counts what the
+/// weld changed.
+bool SewingSimulator::weld(std::size_t seam, StepReport& report) {
   std::optional<WeldedScene> welded = weld_seam(*sewn_, world_, static_cast<Index>(seam));
   if (!welded) return false;
   try {
+    // The move is made only where it passes through nothing.
     World world = make_world(welded->scene);
     const Snapshot state = solver_->snapshot();
-    const std::vector<Vec3d> merged =
-        merged_positions(state, world_, *welded, at(world.vertices), build_ != Build::cpu64);
-    if (!moves_freely(state, world_, *welded, merged) || intersects(welded->scene, merged))
-      return false;
+    const std::vector<Vec3d> positions =
+        welded_positions(state, world_, *welded, world, build_ != Build::cpu64);
+    if (!weld_is_free(state, world_, *welded, positions)) return false;
 
     // The new solver goes on with the parameters and the memory of the old one.
     auto solver = make_(build_, std::make_shared<const Scene>(welded->scene));
     solver->set_parameters(solver_->parameters());
-    solver->restore(weld_memory(state, world_, *welded, world, merged));
+    solver->restore(weld_memory(state, world_, *welded, world, positions));
+    const double energy = solver_->measure(report);
+    report.energy_balance += solver->measure(report) - energy;
     take(std::move(*welded), std::move(solver), std::move(world));
     return true;
   } catch (const InputError&) {
@@ -266,30 +123,40 @@ StepReport SewingSimulator::step(std::span<const InputEvent> events) {
   name_originally(report.offending);
   if (!report.accepted) return report;
 
-  // A seam of one cloth is welded as soon as it is closed; those of two cloths stay springs.
-  std::vector<Vec3f> x;
-  for (std::size_t s = 0; s < progress_.size(); ++s) {
-    SeamProgress& p = progress_[s];
-    const Seam& seam = sewn_->seams[s];
-    if (p.welded != 0 || seam.from != seam.to || report.step < p.next) continue;
-    if (x.empty()) solver_->positions(x);
-    if (!is_closed(seam, x)) continue;
-    const std::string name = "seam " + in_quotes(seam.name);
-    const std::size_t pairs = seam.pairs.size();
-    if (weld(s)) {
-      p.welded = static_cast<Index>(
-          1 + std::ranges::count_if(progress_, [](const auto& q) { return q.welded > 0; }));
-      report.notes.push_back(name + ": welded at " + number_text(report.time) + " s, " +
-                             std::to_string(pairs) + " pairs");
-      report.state_hash = solver_->state_hash();
-      x.clear();
-    } else {
-      p.delay = p.delay == 0 ? kFirstDelay : std::min(2 * p.delay, kLongestDelay);
-      p.next = report.step + p.delay;
-    }
-  }
+  for (std::size_t s = 0; s < progress_.size(); ++s) close_seam(s, report);
   if (report.stuck_pairs > 0) note_stuck(report);
   return report;
+}
+
+/// Welds a seam of one cloth as soon as it is closed. That of two cloths stays a row of springs.
+void SewingSimulator::close_seam(std::size_t s, StepReport& report) {
+  SeamProgress& p = progress_[s];
+  const Seam& seam = sewn_->seams[s];
+  const bool one_cloth = seam.from == seam.to;
+  if (p.welded != 0 || seam.pairs.empty() || report.step < p.next) return;
+  if (!one_cloth && told_closed_[s]) return;
+  if (!is_closed(seam)) return;
+
+  // What happened is said once for each seam.
+  const std::string name = "seam " + in_quotes(seam.name) + ": ";
+  const std::string pairs = std::to_string(seam.pairs.size()) + " pairs";
+  const auto tell = [&](const std::string& text) {
+    if (!told_closed_[s]) report.notes.push_back(name + text);
+    told_closed_[s] = true;
+  };
+  if (!one_cloth) {
+    tell("closed at " + seconds_text(report.time) + ", " + pairs +
+         "; springs hold the two cloths together");
+  } else if (weld(s, report)) {
+    p.welded = static_cast<Index>(
+        1 + std::ranges::count_if(progress_, [](const auto& q) { return q.welded > 0; }));
+    report.notes.push_back(name + "welded at " + seconds_text(report.time) + ", " + pairs);
+  } else {
+    tell("closed at " + seconds_text(report.time) +
+         " but not welded: the last move or the welded mesh meets something; springs hold it");
+    p.delay = p.delay == 0 ? kFirstDelay : std::min(2 * p.delay, kLongestDelay);
+    p.next = report.step + p.delay;
+  }
 }
 
 /// Names each stuck seam once, with what its worst pair has between its ends.
@@ -300,6 +167,8 @@ void SewingSimulator::note_stuck(StepReport& report) {
     const StitchedPair* pair = nullptr;
     double distance = 0;
   };
+
+  // The worst pair of a seam is the one that is widest apart.
   std::vector<Worst> worst(progress_.size());
   for (std::size_t i = 0; i < pairs.size() && i < state.stitches.size(); ++i) {
     if (state.stitches[i].age <= kStuckSteps) continue;
@@ -309,26 +178,13 @@ void SewingSimulator::note_stuck(StepReport& report) {
   }
 
   for (std::size_t s = 0; s < worst.size(); ++s) {
-    if (!worst[s].pair || named_[s]) continue;
-    named_[s] = true;
-    const Vec3d a = state.x1[at(worst[s].pair->a)], b = state.x1[at(worst[s].pair->b)];
-    std::set<std::string> between;
-    for (std::size_t f = 0; f < world_.face.size(); ++f) {
-      const Triangle& t = world_.face[f];
-      const auto is_end = [&](Index v) { return v == worst[s].pair->a || v == worst[s].pair->b; };
-      if (std::ranges::any_of(t, is_end)) continue;
-      if (!crosses(a, b, state.x1[at(t[0])], state.x1[at(t[1])], state.x1[at(t[2])])) continue;
-      const WorldObject& object = world_.objects[at(world_.object[at(t[0])])];
-      between.insert((object.cloth ? "cloth " : "obstacle ") + in_quotes(object.name));
-    }
-
-    std::string line = "seam " + in_quotes(sewn_->seams[s].name) + ": " +
-                       rounded_text(100 * worst[s].distance, 2) + " cm apart";
-    std::string names;
-    for (const std::string& name : between) names += (names.empty() ? "" : " and ") + name;
-    line += names.empty() ? ", comes no nearer, with nothing between its sides"
-                          : ", held apart by " + names;
-    report.notes.push_back(line);
+    if (!worst[s].pair || told_stuck_[s]) continue;
+    told_stuck_[s] = true;
+    const std::string names = names_between(*worst[s].pair, world_, state.x1);
+    report.notes.push_back("seam " + in_quotes(sewn_->seams[s].name) + ": " +
+                           rounded_text(100 * worst[s].distance, 2) + " cm apart, " +
+                           (names.empty() ? "comes no nearer, with nothing between its sides"
+                                          : "held apart by " + names));
   }
 }
 

@@ -32,13 +32,15 @@ class SewingSimulator final : public Simulator {
   std::uint64_t state_hash() const override { return solver_->state_hash(); }
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
+  double measure(StepReport& report) override { return solver_->measure(report); }
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
   std::vector<HandleState> handles() const override { return solver_->handles(); }
 
  private:
-  bool is_closed(const Seam& seam, const std::vector<Vec3f>& x) const;
-  bool weld(std::size_t seam);
+  bool is_closed(const Seam& seam) const;
+  void close_seam(std::size_t seam, StepReport& report);
+  bool weld(std::size_t seam, StepReport& report);
   void take(WeldedScene welded, std::unique_ptr<Simulator> solver, World world);
   void start_again();
   bool sew_as(const std::vector<SeamProgress>& progress);
@@ -54,12 +56,8 @@ class SewingSimulator final : public Simulator {
   std::vector<Index> vertex_;           ///< number in sewn_ of each vertex of scene_
   std::vector<Index> original_;         ///< first vertex of scene_ of each vertex of sewn_
   std::vector<SeamProgress> progress_;  ///< of each seam
-  std::vector<bool> named_;             ///< seams that were named as stuck
+  std::vector<bool> told_closed_;       ///< seams whose closing was noted
+  std::vector<bool> told_stuck_;        ///< seams that were named as stuck
 };
-
-/// The state of a scene carried over to the scene after a weld: `positions` are the new ones, and
-/// velocities of merged vertices are their means weighted with mass.
-Snapshot weld_memory(const Snapshot& state, const World& before, const WeldedScene& welded,
-                     const World& after, const std::vector<Vec3d>& positions);
 
 }  // namespace icloth

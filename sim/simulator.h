@@ -43,6 +43,10 @@ class Simulator {
   /// check accepts it, but closer than the numbers of the build resolve. Changes nothing.
   virtual std::vector<OffendingPair> contacts_at_rest() { return {}; }
 
+  /// Writes what a report says about the present state: energies, strain, speed, seams, hash.
+  /// Returns the energy of which StepReport::energy_balance counts the change [J].
+  virtual double measure(StepReport&) { return 0; }
+
   virtual const Parameters& parameters() const = 0;
   virtual void set_parameters(const Parameters& parameters) = 0;
 

@@ -37,6 +37,7 @@ class Solver final : public Simulator {
   std::uint64_t state_hash() const override;
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
+  double measure(StepReport& report) override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
   std::vector<HandleState> handles() const override;

@@ -99,19 +99,24 @@ void Solver::finish_step(StepReport& report) {
   }
   report.offending.clear();
   report.no_room = false;
-  watch_seams(mesh_, state_);
+  watch_seams(mesh_, parameters_, state_);
   advance_clocks(report.dt);
   report.step = ++state_.step;
 }
 
 /// Energies and hash are those of the state that was reached, or kept.
 void Solver::report_end_state(StepReport& report) {
-  const double energy = report_state(implicit_.forces(), mesh_, state_, parameters_, report);
+  const double energy = measure(report);
   if (report.accepted) report.energy_balance = energy - *energy_ - work_;
   energy_ = energy;
+}
+
+double Solver::measure(StepReport& report) {
+  use_device();
   report.state_hash = hash_state(state_);
   report.pinched = pinch_.vertices(state_);
   report_seams(mesh_, state_, report);
+  return report_state(implicit_.forces(), mesh_, state_, parameters_, report);
 }
 
 /// Time that no stage has measured counts as the rest of the step.

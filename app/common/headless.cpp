@@ -139,6 +139,7 @@ HeadlessResult run_headless(const HeadlessJob& job) {
       return result;
     }
 
+    // What became of seams is said as it happens.
     if (!job.quiet && !report.notes.empty()) {
       progress.finish();
       print_notes(report.notes);

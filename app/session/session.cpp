@@ -339,6 +339,11 @@ void Session::finish(const StepReport& report) {
     if (reports_.size() > kMaxReports) reports_.pop_front();
   }
 
+  // What the step has to say to people is shown as one note.
+  std::string notes;
+  for (const std::string& line : report.notes) notes += (notes.empty() ? "" : "; ") + line;
+  if (!notes.empty()) note(notes);
+
   // A refused step stops the run, and its reason is shown.
   failed_ = !report.accepted;
   if (failed_) {

@@ -31,6 +31,11 @@ struct IsClosing {
   }
 };
 
+/// Stiffness of the spring of a pair [N/m].
+ICLOTH_HD Real stiffness_of(const SeamLaw& law, const StitchState& s, Real mass, Real distance) {
+  return s.closed != 0 ? holding_stiffness(law) : seam_stiffness(law, s.clock, mass, distance);
+}
+
 /// An implicit spring of length zero with critical damping.
 struct MakeCoupling {
   View<const StitchPair> pairs;
@@ -46,7 +51,7 @@ struct MakeCoupling {
     const StitchPair& p = pairs[closing[i]];
     const Real mass = reduced_mass(p, inverse_mass);
     const Vec3r gap = x0[p.a] - x0[p.b];
-    const Real k = seam_stiffness(law, states[closing[i]].clock, mass, norm(gap));
+    const Real k = stiffness_of(law, states[closing[i]], mass, norm(gap));
     const Real damping = 2 * std::sqrt(k * mass);
 
     // The stencil names both vertices twice, the second time without weight.
@@ -96,19 +101,26 @@ struct AdvanceClock {
   }
 };
 
+/// A pair grows older while it comes no nearer although it is pulled as strongly as it may be.
 struct WatchPair {
   View<const StitchPair> pairs;
   View<const Vec3r> x;
-  Real closed;
+  View<const Real> inverse_mass;
+  SeamLaw law;
   View<StitchState> states;
 
   ICLOTH_HD void operator()(Index i) const {
     StitchState& s = states[i];
     if (!(s.clock >= 0)) return;
     const Real distance = distance_of(pairs[i], x);
-    const bool nearer = s.age == 0 || distance < kProgress * s.mark || distance < closed;
+    if (distance < law.closed) s.closed = 1;
+    const bool nearer = s.closed != 0 || s.age == 0 || distance < kProgress * s.mark;
     if (nearer) s.mark = distance;
-    s.age = nearer ? 1 : s.age + 1;
+
+    // Two vertices that are both held will never meet, however they are pulled.
+    const Real mass = reduced_mass(pairs[i], inverse_mass);
+    const bool fully = !(mass > 0) || pulls_fully(law, s.clock, mass, distance);
+    s.age = nearer ? 1 : s.age + (fully ? 1 : 0);
   }
 };
 
@@ -140,6 +152,12 @@ Real closed_distance(const Topology& mesh) {
   return real(weld_tolerance(static_cast<double>(mesh.median_edge)));
 }
 
+SeamLaw seam_law(const Topology& mesh, const Parameters& parameters) {
+  const SeamParameters& p = parameters.seams;
+  const Real force = real(p.max_pull) * mesh.median_edge;  // a pair has about so much of the seam
+  return {real(p.slowest), real(p.fastest), real(p.ramp), force, closed_distance(mesh)};
+}
+
 }  // namespace
 
 void upload_seams(Topology& mesh, State& state, const Scene& scene, const World& world) {
@@ -147,7 +165,7 @@ void upload_seams(Topology& mesh, State& state, const Scene& scene, const World&
   if (pairs.empty()) return;
   upload_as(mesh.stitches, pairs, [](const StitchedPair& p) { return StitchPair{p.a, p.b}; });
   upload_as(state.stitches, pairs, [](const StitchedPair& p) {
-    return StitchState{p.pulls ? Real(0) : Real(-1), Real(0), 0};
+    return StitchState{p.pulls ? Real(0) : Real(-1), Real(0), 0, 0};
   });
   const SeamNeighbours neighbours = seam_neighbours(world, pairs);
   mesh.seam_neighbour_first.upload(neighbours.first);
@@ -165,7 +183,6 @@ void SeamSprings::assemble(const SubstepContext& step, View<const Vec3r> free_mo
   const Index count = compact("seams.closing", pairs.size(),
                               IsClosing{pairs, s.stitches.view(), s.inverse_mass.view()}, closing_);
   couplings_.resize(count);
-  const SeamParameters& p = step.parameters.seams;
   for_each("seams.couplings", count,
            MakeCoupling{.pairs = pairs,
                         .states = s.stitches.view(),
@@ -174,7 +191,7 @@ void SeamSprings::assemble(const SubstepContext& step, View<const Vec3r> free_mo
                         .free_motion = free_motion,
                         .v = v,
                         .inverse_mass = s.inverse_mass.view(),
-                        .law = {real(p.slowest), real(p.fastest), real(p.ramp), real(p.max_force)},
+                        .law = seam_law(step.mesh, step.parameters),
                         .h = h,
                         .out = couplings_.view()});
 }
@@ -193,11 +210,11 @@ void advance_seams(const Topology& mesh, const Parameters& parameters, State& st
                         state.stitches.view()});
 }
 
-void watch_seams(const Topology& mesh, State& state) {
+void watch_seams(const Topology& mesh, const Parameters& parameters, State& state) {
   if (mesh.stitches.empty()) return;
   for_each("seams.watch", mesh.stitches.size(),
-           WatchPair{mesh.stitches.view(), state.x1.view(), closed_distance(mesh),
-                     state.stitches.view()});
+           WatchPair{mesh.stitches.view(), state.x1.view(), state.inverse_mass.view(),
+                     seam_law(mesh, parameters), state.stitches.view()});
 }
 
 void report_seams(const Topology& mesh, const State& state, StepReport& report) {

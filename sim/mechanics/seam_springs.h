@@ -36,7 +36,7 @@ class SeamSprings {
 void advance_seams(const Topology& mesh, const Parameters& parameters, State& state, Real dt);
 
 /// Notes after an accepted step which pairs come nearer to each other.
-void watch_seams(const Topology& mesh, State& state);
+void watch_seams(const Topology& mesh, const Parameters& parameters, State& state);
 
 /// Writes what the statistics say about seams.
 void report_seams(const Topology& mesh, const State& state, StepReport& report);

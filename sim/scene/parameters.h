@@ -99,7 +99,7 @@ struct SeamParameters {
   double slowest = 0.3;
   double fastest = 0.02;
   double ramp = 0.5;
-  double max_force = 0.5;
+  double max_pull = 10.0;
   double reach = 0.02;
 };
 

@@ -8,6 +8,7 @@
 
 #include "kernels/index.h"
 #include "sim/files/text.h"
+#include "sim/scene/half_edges.h"
 #include "sim/scene/scene_json.h"
 
 namespace icloth {
@@ -19,19 +20,16 @@ constexpr std::size_t kMostSeams = 1000;
 using Border = std::map<Index, std::vector<Index>>;
 
 Border border_of(const TriangleMesh& mesh) {
-  // An edge of one face lies on the border.
-  std::map<std::array<Index, 2>, int> faces;
-  for (const Triangle& t : mesh.faces)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Index a = t[c], b = t[(c + 1) % 3];
-      ++faces[{std::min(a, b), std::max(a, b)}];
-    }
-
+  const std::vector<HalfEdge> sides = sorted_half_edges(mesh.faces);
   Border border;
-  for (const auto& [edge, count] : faces) {
-    if (count != 1) continue;
-    border[edge[0]].push_back(edge[1]);
-    border[edge[1]].push_back(edge[0]);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    // An edge of one face lies on the border.
+    const auto same = [&](std::size_t j) {
+      return j < sides.size() && sides[j].edge == sides[i].edge;
+    };
+    if ((i > 0 && same(i - 1)) || same(i + 1)) continue;
+    border[sides[i].edge[0]].push_back(sides[i].edge[1]);
+    border[sides[i].edge[1]].push_back(sides[i].edge[0]);
   }
   return border;
 }
@@ -67,6 +65,7 @@ std::vector<Index> border_path(const Border& border, const std::vector<Vec3d>& x
     }
   }
 
+  // The way is followed back from its end.
   if (start != end && !before.contains(end)) return {};
   std::vector<Index> path{end};
   while (path.back() != start) path.push_back(before[path.back()]);
@@ -99,6 +98,7 @@ Run parse_run(const JsonValue& value, const LoadedCloth& cloth) {
     }
   }
 
+  // Every vertex of a run is stitched once.
   std::set<Index> once(run.vertices.begin(), run.vertices.end());
   if (once.size() != run.vertices.size()) value.refuse("a run that comes to no vertex twice");
   return run;
@@ -167,6 +167,7 @@ void check_pairs(const JsonValue& where, Seam& seam, const LoadedCloth& cloth, b
                    std::to_string(first ? b : a) + " in two");
   }
 
+  // Vertices of one edge would leave a face without area.
   if (!one_cloth) return;
   std::set<std::array<Index, 2>> edges;
   for (const Triangle& t : cloth.cloth.mesh.faces)
@@ -183,6 +184,8 @@ Seam parse_seam(const JsonValue& value, Index own, const std::vector<LoadedCloth
     value.refuse(
         "an object with \"from\" and \"to\", or \"pairs\": names of edges are those of a "
         "pattern, which has its own stitches");
+
+  // The cloth of the other side is this one unless the seam says so.
   JsonObject object(value);
   Seam seam;
   seam.name = object.text("name", "seam" + std::to_string(number));

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <utility>
 
 #include "kernels/index.h"
+#include "sim/files/disjoint_sets.h"
 
 namespace icloth {
 namespace {
@@ -15,23 +15,16 @@ using Corners = std::array<Vec2d, 3>;
 
 /// Place of each vertex of a cloth after its pairs have become one vertex each, the first of them.
 std::vector<Index> merge_pairs(const Seam& seam, std::size_t vertices, std::size_t& left) {
-  std::vector<Index> parent(vertices);
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto find = [&](Index v) {
-    while (parent[at(v)] != v) v = parent[at(v)];
-    return v;
-  };
-  for (const auto& [a, b] : seam.pairs) {
-    const Index i = find(a), j = find(b);
-    parent[at(std::max(i, j))] = std::min(i, j);
-  }
+  DisjointSets sets(vertices);
+  for (const auto& [a, b] : seam.pairs) sets.unite(at(a), at(b));
 
   // Those that are left keep their order.
   std::vector<Index> number(vertices);
   left = 0;
-  for (std::size_t v = 0; v < vertices; ++v)
-    number[v] = parent[v] == static_cast<Index>(v) ? static_cast<Index>(left++)
-                                                   : number[at(find(static_cast<Index>(v)))];
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const std::size_t first = sets.find(v);
+    number[v] = first == v ? static_cast<Index>(left++) : number[first];
+  }
   return number;
 }
 
@@ -59,6 +52,7 @@ std::vector<Corners> lay_out_faces(const Cloth& cloth, const World& world,
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
     for (std::size_t c = 0; c < 3; ++c) faces[at(cloth.mesh.faces[f][c])].push_back({f, c});
 
+  // At first each face lies in a frame of its own.
   std::vector<Corners> uv;
   for (std::size_t f = 0; f < cloth.mesh.faces.size(); ++f)
     uv.push_back(material_frame(world.face_inverse[at(object.first_face) + f]));
@@ -81,6 +75,8 @@ std::vector<Corners> lay_out_faces(const Cloth& cloth, const World& world,
           const Vec2d along = uv[f][(c + 1) % 3] - uv[f][c], there = uv[g][e] - uv[g][d];
           const Vec2d off = along - there;
           if (std::hypot(off.x, off.y) > 1e-6 * std::hypot(along.x, along.y)) continue;
+
+          // Both corners meet, so the neighbour continues the material on this side.
           const Vec2d shift = uv[f][c] - uv[g][d];
           for (Vec2d& corner : uv[g]) corner = corner + shift;
           placed[g] = true;

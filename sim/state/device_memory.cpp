@@ -17,7 +17,7 @@ void assign(HeldForceOf<double>& to, const HeldForce& from) {
 }
 void assign(LetGo& to, const LetGo& from) { to = from; }
 void assign(StitchStateOf<double>& to, const StitchStateOf<Real>& from) {
-  to = {static_cast<double>(from.clock), static_cast<double>(from.mark), from.age};
+  to = {static_cast<double>(from.clock), static_cast<double>(from.mark), from.age, from.closed};
 }
 void assign(FaceYarns& to, const YarnAnchor& from) {
   assign(to.curvature[0], from.curvature.uu);
@@ -39,7 +39,7 @@ void assign_real(HeldForce& to, const HeldForceOf<double>& from) {
 }
 void assign_real(LetGo& to, const LetGo& from) { to = from; }
 void assign_real(StitchStateOf<Real>& to, const StitchStateOf<double>& from) {
-  to = {real(from.clock), real(from.mark), from.age};
+  to = {real(from.clock), real(from.mark), from.age, from.closed};
 }
 void assign_real(YarnAnchor& to, const FaceYarns& from) {
   to = {{real(from.curvature[0]), real(from.curvature[1]), real(from.curvature[2])},

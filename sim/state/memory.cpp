@@ -64,7 +64,7 @@ void fields(L& entry, const Visit& visit) {
 template <class S, class Visit>
 requires std::is_same_v<std::remove_const_t<S>, StitchStateOf<double>>
 void fields(S& stitch, const Visit& visit) {
-  visit(stitch.clock), visit(stitch.mark), visit(stitch.age);
+  visit(stitch.clock), visit(stitch.mark), visit(stitch.age), visit(stitch.closed);
 }
 
 template <class S, class Visit>

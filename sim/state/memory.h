@@ -38,12 +38,13 @@ struct LetGo {
 /// How far a stitched pair of an open seam has come (sim/mechanics/seam_springs.h).
 template <class Real>
 struct StitchStateOf {
-  Real clock = 0;  ///< time for which it has been closing [s]; −1: it waits for a hand
-  Real mark = 0;   ///< distance when it last came 1 % nearer [m]
-  Index age = 0;   ///< steps since then, and 1; 0: it was not looked at yet
+  Real clock = 0;    ///< time for which it has been closing [s]; −1: it waits for a hand
+  Real mark = 0;     ///< distance when it last came 1 % nearer [m]
+  Index age = 0;     ///< steps at full pull since then, and 1; 0: it was not looked at yet
+  Index closed = 0;  ///< 1: it was closed once, and is held together since
 };
 
-/// A pair that comes no nearer for so many steps is stuck.
+/// A pair that comes no nearer for so many steps, pulled as strongly as it may be, is stuck.
 inline constexpr Index kStuckSteps = 100;
 
 /// Welding of a seam (sim/sewing_simulator.h).

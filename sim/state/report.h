@@ -47,12 +47,12 @@ struct StepReport {
   /// of all substeps: the force per mass that CG, where it stopped, makes or loses [m/s²].
   double momentum_error = 0;
   /// Kinetic, elastic, gravity and pressure energy after the step, less those before it, less the
-  /// work done on the cloth in it by air, hands, contacts (repulsion and friction, as the linear
-  /// terms applied them), yarn friction (what it gives back included) and impact zones (all that
-  /// they changed in those energies) [J]. Negative: what
-  /// damping, of the fabric and of the integrator, took away; positive: made from nothing, an
-  /// error. The errors of CG and of the linearisation are in it, and what the measured fabrics,
-  /// whose stiffness follows the strain, give or take along a path. 0 of a refused step.
+  /// work done on the cloth in it by air, hands, open seams, contacts (repulsion and friction, as
+  /// the linear terms applied them), yarn friction (what it gives back included) and impact zones
+  /// (all that they changed in those energies) [J]. Negative: what damping, of the fabric and of
+  /// the integrator, took away; positive: made from nothing, an error. The errors of CG and of the
+  /// linearisation are in it, what the measured fabrics, whose stiffness follows the strain, give
+  /// or take along a path, and what the weld of a seam changes. 0 of a refused step.
   double energy_balance = 0;
   /// The limits that were reached in the step, in refused substeps too: a bit each, see limits.h.
   std::int64_t limits = 0;

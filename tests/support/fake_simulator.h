@@ -19,6 +19,7 @@ struct FakeOptions {
   int step_ms = 0;            ///< how long a step takes
   std::int64_t refuse = -1;   ///< calls of step() from this one on are refused …
   double refuse_above = 0;    ///< … while the time step is above this [s]
+  std::int64_t note = -1;     ///< the report of this call of step() has two notes
   std::int64_t explode = -1;  ///< this call of step() throws
   std::int64_t lose = -1;     ///< from this call of step() on the device is lost: it and all
                               ///< questions about the state throw
@@ -55,6 +56,7 @@ class FakeSimulator : public Simulator {
     for (const InputEvent& event : events) apply(event);
     StepReport report;
     report.dt = parameters_.step.time_step;
+    if (call == options_.note) report.notes = {"seam 'a': welded", "seam 'b': stuck"};
     report.accepted =
         options_.refuse < 0 || call < options_.refuse || report.dt <= options_.refuse_above;
     if (report.accepted) advance();

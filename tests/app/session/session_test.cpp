@@ -238,6 +238,13 @@ TEST(Session, PausesOnARefusedStepAndGoesOnWithASmallerOne) {
             session->recording().final_hash);
 }
 
+TEST(Session, ShowsTheNotesOfAStepAsOne) {
+  const auto session = make({.note = 0});
+  session->step_once();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.notes == 1; }));
+  EXPECT_EQ(session->state().note, "seam 'a': welded; seam 'b': stuck");
+}
+
 TEST(Session, PassesOverARefusedStepAndReplaysThat) {
   const FakeOptions options{.refuse = 2, .refuse_above = 0.006};
   const auto session = make(options);
