@@ -185,7 +185,7 @@ TEST(Memory, RefusesOtherFilesAndVersions) {
   EXPECT_NE(refusal(other).find("ICLOTHME"), std::string::npos);
   other = memory_to_bytes(full_snapshot());
   put(other, 8, std::uint32_t{1});
-  EXPECT_NE(refusal(other).find("version 1, expected 3"), std::string::npos);
+  EXPECT_NE(refusal(other).find("version 1, expected 4"), std::string::npos);
 }
 
 TEST(Memory, CountsTheBytesOfItsLists) {
