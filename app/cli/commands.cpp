@@ -207,12 +207,23 @@ void Commands::add_check() {
 void Commands::add_sew() {
   CLI::App* command =
       add_command("sew", "sew a pattern and put it on a body", [this] { return run_sew(sew); });
-  command->add_option("PATTERN", sew.pattern, "NAME_specification.json of GarmentCode")->required();
+  command
+      ->add_option("PATTERN", sew.pattern,
+                   "NAME_specification.json of GarmentCode; with --within, a mesh of panels")
+      ->required();
+  command->add_option("--within", sew.within, "sew the borders of a mesh that are so near: 4mm")
+      ->transform(CLI::AsNumberWithUnit(
+          std::map<std::string, double>{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}))
+      ->check(CLI::Range(1e-9, 1.0));
+  command->add_option("--rest", sew.rest, "the same panels at rest, with --within")
+      ->needs("--within");
   command->add_option("--body", sew.body, "mesh that the garment is put on");
   command->add_option("--triangles", sew.triangles, "wanted number")
       ->check(CLI::Range(2, 4000000))
       ->capture_default_str();
-  command->add_option("--out", sew.out, "OBJ of the garment, its uv the pattern in metres");
+  command->add_option("--out", sew.out,
+                      "OBJ of the garment, its uv the pattern in metres; with "
+                      "--within also a .json scene with open seams");
   command->add_option("--material", sew.material, "name or file of the fabric")
       ->capture_default_str();
 

@@ -22,4 +22,16 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> faces, Index f
   return half_edges;
 }
 
+std::vector<HalfEdge> border_sides(std::span<const Triangle> faces) {
+  const std::vector<HalfEdge> sides = sorted_half_edges(faces);
+  std::vector<HalfEdge> border;
+
+  // Sides of one edge stand together; one on the border stands alone.
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
+    if (end - begin == 1) border.push_back(sides[begin]);
+  }
+  return border;
+}
+
 }  // namespace icloth

@@ -19,4 +19,7 @@ struct HalfEdge {
 /// sorting is simpler than linking pairs. `first_face`: number of the first one.
 std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> faces, Index first_face = 0);
 
+/// Those of them that are the only one of their edge: the border, by edge.
+std::vector<HalfEdge> border_sides(std::span<const Triangle> faces);
+
 }  // namespace icloth

@@ -20,16 +20,10 @@ constexpr std::size_t kMostSeams = 1000;
 using Border = std::map<Index, std::vector<Index>>;
 
 Border border_of(const TriangleMesh& mesh) {
-  const std::vector<HalfEdge> sides = sorted_half_edges(mesh.faces);
   Border border;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    // An edge of one face lies on the border.
-    const auto same = [&](std::size_t j) {
-      return j < sides.size() && sides[j].edge == sides[i].edge;
-    };
-    if ((i > 0 && same(i - 1)) || same(i + 1)) continue;
-    border[sides[i].edge[0]].push_back(sides[i].edge[1]);
-    border[sides[i].edge[1]].push_back(sides[i].edge[0]);
+  for (const HalfEdge& side : border_sides(mesh.faces)) {
+    border[side.edge[0]].push_back(side.edge[1]);
+    border[side.edge[1]].push_back(side.edge[0]);
   }
   return border;
 }

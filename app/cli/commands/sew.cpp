@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/cli/commands/sew_panels.h"
 #include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "kernels/index.h"
@@ -102,6 +103,7 @@ void print_report(const GarmentReport& report, std::size_t intersections, double
 }  // namespace
 
 int run_sew(const SewOptions& options) {
+  if (options.within > 0) return sew_panels(options);
   const Clock::time_point begin = Clock::now();
   set_thread_count(options.threads);
   SceneOrigin read, dressed;

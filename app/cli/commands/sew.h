@@ -9,10 +9,12 @@
 namespace icloth {
 
 struct SewOptions {
-  std::string pattern;  ///< JSON of GarmentCode
+  std::string pattern;  ///< JSON of GarmentCode; with `within`: mesh of the panels
   std::string body;     ///< mesh that it is put on; empty: the garment is sewn in the air
   std::string out;      ///< OBJ of the garment, with its pattern as texture coordinates
   std::string material = "default";
+  double within = 0;  ///< borders of a mesh that near each other are sewn [m]; 0: a pattern
+  std::string rest;   ///< mesh of the same panels at rest; empty: they are at rest as they are
   Index triangles = 4000;
   std::vector<std::string> hold;  ///< labels of edges that keep their height until it settles
   double settling = 0.5;          ///< time with weight [s]
