@@ -107,38 +107,39 @@ def armhole_length(front, back):
     return front.length('armhole+') + back.length('armhole+')
 
 
-def gore(name, angle, inner, length, parts):
+def gore(name, angle, inner, length, parts, hem=(('hem', 1),), label='lower_interface'):
     """A piece of a circle skirt of `angle` degrees; (0, 0) is the center of its circles. Its waist
-    is divided into arcs with these names and shares of it, from x > 0 to x < 0."""
+    is divided into arcs with these names and shares of it, from x > 0 to x < 0, and its hem into
+    others from x < 0 to x > 0; `label`: that of the waist."""
     def ray(radius, degrees):
         return (radius * math.sin(math.radians(degrees)), -radius * math.cos(math.radians(degrees)))
 
     outer, half = inner + length, angle / 2
     panel = Panel(name, ray(outer, -half))
-    panel.circle('hem', ray(outer, half), outer, True)
+    turned = -half
+    for part, share in hem:
+        turned += share * angle
+        panel.circle(part, ray(outer, turned), outer, True)
     panel.line('seam+', ray(inner, half))
     turned = half
     for part, share in parts:
         turned -= share * angle
         panel.circle(part, ray(inner, turned), inner, False)
-        panel.edges[-1].label = 'lower_interface'
+        panel.edges[-1].label = label
     return panel.line('seam-', panel.start)
 
 
-def band(name, top, bottom, height, parts=(('top', 1),), hem=(('hem', 1),), label=None):
-    """A trapezoid or rectangle; its upper border is divided into parts from x > 0 to x < 0, its
-    lower one from x < 0 to x > 0."""
+def yoke(name, top, bottom, height, hip, hem, label):
+    """The front or back of a skirt from the waist to the hips. Its sides bulge by `hip` times their
+    length; its hem is divided into parts from x < 0 to x > 0."""
     panel = Panel(name, (-bottom / 2, -height))
     x = -bottom / 2
     for part, share in hem:
         x += share * bottom
         panel.line(part, (x, -height))
-    panel.line('seam+', (top / 2, 0))
-    x = top / 2
-    for part, share in parts:
-        x -= share * top
-        panel.line(part, (x, 0), label)
-    return panel.line('seam-', panel.start)
+    panel.bow('seam+', (top / 2, 0), .5, -hip)
+    panel.line('waist', (-top / 2, 0), label)
+    return panel.bow('seam-', panel.start, .5, -hip)
 
 
 HALVES = (('waist_a', .5), ('waist_b', .5))

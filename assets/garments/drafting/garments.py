@@ -1,4 +1,6 @@
 """The garments of the bodies in assets/bodies. Lengths are centimetres."""
+import math
+
 from drafting import blocks
 from drafting.panel import Pattern
 
@@ -99,38 +101,43 @@ def sew_to_quarters(pattern, front, back, middle, side, round_panels):
 
 
 def tiered():
-    """A yoke and two gathered tiers, each a ring of four pieces and 1.39 times as long as what it
-    hangs from."""
+    """A yoke and three tiers, each a ring of four flared pieces. The first one is as long as the
+    hem of the yoke; the others are gathered."""
     pattern = Pattern('tiered')
     quarters = (('hem_side-', .25), ('hem_middle', .5), ('hem_side+', .25))
-    front = blocks.band('yoke_front', 37.5, 52, 18, hem=quarters, label=WAIST)
-    back = blocks.band('yoke_back', 37.5, 52, 18, hem=quarters, label=WAIST)
-    front.place((0, 104, 16))
-    back.place((0, 104, -18), (0, 180, 0))
-    first, second = (tier(number, top, bottom, height)
-                     for number, top, bottom, height in ((1, 36, 36, 18), (2, 50, 50, 20)))
-    blocks.place_round(first, 84, 19)
-    blocks.place_round(second, 62, 26)
-    pattern.add(front, back, *first, *second)
+    front = blocks.yoke('yoke_front', 35, 51, 18, .12, quarters, WAIST)
+    back = blocks.yoke('yoke_back', 35, 51, 18, .12, quarters, WAIST)
+    front.place((0, 108, 16))
+    back.place((0, 108, -18), (0, 180, 0))
+    tiers = [tier(1, 25.5, 29.5, 22, 88, 20), tier(2, 29.5 * FULL, 39.5, 28, 64, 25),
+             tier(3, 39.5 * FULL, 68, 30, 35, 33)]
+    pattern.add(front, back, *(panel for ring in tiers for panel in ring))
     pattern.sew(front, 'seam+', back, 'seam-')
     pattern.sew(front, 'seam-', back, 'seam+')
-    blocks.sew_round(pattern, first)
-    blocks.sew_round(pattern, second)
-    sew_to_quarters(pattern, front, back, 'hem_middle', 'hem_side', first)
-    for upper, lower in zip(first, second):
-        for edge, other in zip(('hem',) if lower.has('waist') else ('hem_b', 'hem_a'),
-                               ('waist',) if lower.has('waist') else ('waist_a', 'waist_b')):
-            pattern.sew(upper, edge, lower, other)
+    for ring in tiers:
+        blocks.sew_round(pattern, ring)
+    sew_to_quarters(pattern, front, back, 'hem_middle', 'hem_side', tiers[0])
+    for above, below in zip(tiers, tiers[1:]):
+        for upper, lower in zip(above, below):
+            for edge, other in (('hem', 'waist'),) if lower.has('waist') else BORDERS:
+                pattern.sew(upper, edge, lower, other)
     return pattern
 
 
-def tier(number, top, bottom, height):
-    """A ring of four pieces; the borders of those at the sides are cut in halves."""
+FULL = 1.2  # length of a gathered border over that of the border it is sewn to
+BORDERS = (('hem_b', 'waist_a'), ('hem_a', 'waist_b'))  # that are sewn together
+
+
+def tier(number, top, bottom, height, at_height, distance):
+    """A ring of four pieces of a circle; the borders of those at the sides are cut in halves."""
+    angle = (bottom - top) / height  # the difference of two arcs over that of their radii
     names = ['tier%d_%s' % (number, place) for place in ('front', 'left', 'back', 'right')]
     halves = (('hem_a', .5), ('hem_b', .5))
-    return [blocks.band(name, top, bottom, height,
-                        parts=blocks.HALVES if k % 2 else (('waist', 1),),
-                        hem=halves if k % 2 else (('hem', 1),)) for k, name in enumerate(names)]
+    ring = [blocks.gore(name, math.degrees(angle), top / angle, height,
+                        blocks.HALVES if k % 2 else (('waist', 1),),
+                        halves if k % 2 else (('hem', 1),), None) for k, name in enumerate(names)]
+    blocks.place_round(ring, at_height + top / angle, distance)
+    return ring
 
 
 def tank():
