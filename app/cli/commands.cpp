@@ -125,6 +125,12 @@ void Commands::add_run() {
   command->add_option("--stats", run.stats_file, "statistics of every step, FILE.csv or FILE.json");
   command->add_option("--input", run.input_file, "recording whose drags are applied");
   command->add_option("--record", run.record_file, "save the run as a recording");
+  command->add_option("--checkpoint", run.checkpoint_file,
+                      "save the state here now and then, and at the end");
+  command->add_option("--checkpoint-every", run.checkpoint_every, "at each K-th step")
+      ->check(CLI::Range(1L, 1000000L))
+      ->capture_default_str();
+  command->add_option("--resume", run.resume_file, "go on from this checkpoint");
   command->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
   command
       ->add_option("--on-failure", run.on_failure,

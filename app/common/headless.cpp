@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <span>
+#include <stdexcept>
 
 #include "app/common/element_names.h"
+#include "app/common/interrupt.h"
 #include "app/common/machine.h"
 #include "app/common/progress.h"
 #include "sim/files/error.h"
@@ -77,6 +80,39 @@ void print_notes(std::span<const std::string> notes) {
     std::fprintf(stderr, "icloth: note: %s\n", one_line(note).c_str());
 }
 
+/// Brings a simulator at the start, and the script of its scene, to the state of a checkpoint.
+void go_on_from(const Checkpoint& checkpoint, const std::string& file, Simulator& simulator,
+                ScriptedInput& script) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(shown_path(file) + ": " + what);
+  };
+  if (checkpoint.recording.build != build_name(simulator.build()))
+    refuse("made by the build " + checkpoint.recording.build + ", expected " +
+           std::string(build_name(simulator.build())) + " (--device, --precision)");
+  if (checkpoint.start_hash != simulator.state_hash())
+    refuse("made of a scene with another start state than " + in_quotes(simulator.scene().name));
+
+  // What was changed on the way holds on, and so does what hands have hold of.
+  for (const Recording::Step& step : checkpoint.recording.steps) apply_parameters(simulator, step);
+  try {
+    simulator.restore(checkpoint.state);
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
+  }
+  if (simulator.state_hash() != checkpoint.recording.final_hash ||
+      simulator.step_index() != checkpoint.steps())
+    refuse("the state is not that after its " + std::to_string(checkpoint.steps()) + " steps");
+  for (const HandleState& handle : simulator.handles()) script.go_on_holding(handle.id);
+}
+
+/// Writes the state, and the input that led to it.
+void write_checkpoint(const HeadlessJob& job, const Simulator& simulator,
+                      std::uint64_t start_hash) {
+  Checkpoint checkpoint{*job.record, start_hash, simulator.snapshot()};
+  checkpoint.recording.final_hash = simulator.state_hash();
+  save_checkpoint(checkpoint, job.checkpoint_file);
+}
+
 }  // namespace
 
 void print_notes(const SceneOrigin& origin) { print_notes(origin.notes); }
@@ -117,12 +153,23 @@ HeadlessResult run_headless(const HeadlessJob& job) {
 
   const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);
   ScriptedInput script(*job.scene);
-  if (job.watch) job.watch(*simulator, nullptr);
 
+  // A run that is resumed has made its first steps already.
+  long first = 0;
+  const std::uint64_t start_hash = simulator->state_hash();
+  if (job.resume) {
+    go_on_from(*job.resume, job.resume_file, *simulator, script);
+    first = static_cast<long>(job.resume->steps());
+    if (job.record) job.record->steps = job.resume->recording.steps;
+  }
+  if (job.watch) job.watch(*simulator, nullptr, first >= job.steps);
+
+  std::optional<InterruptWatch> interrupts;
+  if (job.interruptible) interrupts.emplace();
   Progress progress(job.scene->name, job.steps, job.quiet);
 
   // Each step takes its input, and its report goes to the statistics and to the caller.
-  for (long step = 0; step < job.steps; ++step) {
+  for (long step = first; step < job.steps && !result.interrupted; ++step) {
     Recording::Step input = next_input(job, script, step, *simulator);
     apply_parameters(*simulator, input);
     const StepReport report = simulator->step(input.events);
@@ -155,8 +202,15 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     }
     if (job.record) job.record->steps.push_back(input);
     result.statistics.add(report);
-    if (job.watch) job.watch(*simulator, &report);
-    if (!report.accepted && job.stop_on_failure) break;
+
+    // What was made is written before the next step, and the end of the run is known by then.
+    const bool stops = !report.accepted && job.stop_on_failure;
+    if (interrupts) result.interrupted = interrupts->noted();
+    const bool last = stops || result.interrupted || step + 1 == job.steps;
+    if (job.watch) job.watch(*simulator, &report, last);
+    if (!job.checkpoint_file.empty() && !stops && (last || (step + 1) % job.checkpoint_every == 0))
+      write_checkpoint(job, *simulator, start_hash);
+    if (stops) break;
     progress.update(step + 1);
   }
   progress.finish();

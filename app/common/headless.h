@@ -8,6 +8,7 @@
 #include "sim/scene/input.h"
 #include "sim/scene/scene_io.h"
 #include "sim/simulator.h"
+#include "sim/state/checkpoint.h"
 
 namespace icloth {
 
@@ -22,9 +23,17 @@ struct HeadlessJob {
   /// The clock goes on over refused steps (Simulator::pass_over); those of a recording that did so
   /// are passed over in any case.
   bool pass_over = false;
-  bool quiet = false;  ///< no progress line
-  /// Called with the start state (null report) and after every step.
-  std::function<void(const Simulator&, const StepReport*)> watch;
+  bool quiet = false;          ///< no progress line
+  bool interruptible = false;  ///< Ctrl-C ends it after the step that is being made
+
+  /// Goes on from there, with the first of the `steps` made already; null: from the start.
+  const Checkpoint* resume = nullptr;
+  std::string resume_file;      ///< its name in messages
+  std::string checkpoint_file;  ///< written every so many steps and at the end; empty: not
+  long checkpoint_every = 100;
+
+  /// Called with the start state (null report) and after every step; `last`: no step follows.
+  std::function<void(const Simulator&, const StepReport*, bool last)> watch;
 };
 
 struct HeadlessResult {
@@ -34,13 +43,16 @@ struct HeadlessResult {
   std::uint64_t state_hash = 0;               ///< of the final state
   bool start_refused = false;                 ///< the start state intersects; nothing was simulated
   std::vector<OffendingPair> start_contacts;  ///< of layers that are too close for the build
+  const char* interrupted = nullptr;          ///< name of the signal that ended it
   int start_exit_code = 0;  ///< of a refused start: 1, or 2 where only the mesh is at fault
 
-  bool clean() const { return refused.empty() && penetrations == 0 && !start_refused; }
+  bool clean() const {
+    return refused.empty() && penetrations == 0 && !start_refused && !interrupted;
+  }
 };
 
 /// Checks the start state, steps, and checks the final state exactly. Start intersections and
-/// refused steps are printed to stderr.
+/// refused steps are printed to stderr. Throws InputError where a checkpoint is of another scene.
 HeadlessResult run_headless(const HeadlessJob& job);
 
 /// Makes the simulator pass over the step that it just refused, and says what that did to the

@@ -122,7 +122,29 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
   return text;
 }
 
-StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
+namespace {
+
+/// The head of a CSV file and its first rows, one for each step before a run goes on.
+std::string kept_rows(const std::string& path, const std::string& head, std::int64_t steps) {
+  const std::string text = read_file(path);
+  if (!text.starts_with(head))
+    throw InputError("--stats " + shown_path(path) +
+                     ": has other columns, expected the statistics of the run that is resumed");
+  std::size_t end = head.size();
+  for (std::int64_t row = 0; row < steps; ++row) {
+    const std::size_t next = text.find('\n', end);
+    if (next == std::string::npos)
+      throw InputError("--stats " + shown_path(path) + ": has " + std::to_string(row) +
+                       " rows, expected " + std::to_string(steps) +
+                       " or more, those of the run that is resumed");
+    end = next + 1;
+  }
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+StatisticsFile::StatisticsFile(std::string path, std::int64_t steps) : path_(std::move(path)) {
   if (path_.empty()) return;
 
   // A path that cannot work is refused before the run.
@@ -135,13 +157,20 @@ StatisticsFile::StatisticsFile(std::string path) : path_(std::move(path)) {
     throw InputError("--stats " + shown_path(path_) + ": there is no folder " +
                      in_quotes(file.parent_path().string()));
 
-  // CSV is opened now and gets its head; JSON is written at the end.
+  // JSON is written whole at the end, which would lose the steps before.
+  const bool goes_on = steps > 0 && std::filesystem::exists(file);
+  if (json && goes_on)
+    throw InputError("--stats " + shown_path(path_) +
+                     ": is there already, expected a .csv file or a new name with --resume");
   if (json) return;
+
+  // CSV is opened now and gets its head.
   is_csv_ = true;
   std::string names;
   for (const ReportColumn& column : report_columns())
     names += (names.empty() ? "" : ",") + std::string(column.name);
-  write_file(path_, names + "\n");
+  names += "\n";
+  write_file(path_, goes_on ? kept_rows(path_, names, steps) : names);
 }
 
 void StatisticsFile::add(const StepReport& report) {

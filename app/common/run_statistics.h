@@ -44,9 +44,10 @@ class RunStatistics {
 /// The file of --stats. CSV is written as the run goes, JSON at the end.
 class StatisticsFile {
  public:
-  /// Opens the file. `path` ends in .csv or .json; empty means that nothing is written. Throws
-  /// InputError, also when the place cannot be written.
-  explicit StatisticsFile(std::string path);
+  /// Opens the file. `path` ends in .csv or .json; empty means that nothing is written. A run that
+  /// goes on after `steps` steps keeps the rows of these in a CSV that is there. Throws InputError,
+  /// also when the place cannot be written.
+  explicit StatisticsFile(std::string path, std::int64_t steps = 0);
   void add(const StepReport& report);
   void finish(const RunStatistics& statistics);
 

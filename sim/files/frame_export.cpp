@@ -9,9 +9,40 @@
 #include "sim/files/text.h"
 
 namespace icloth {
+namespace {
 
-FrameExport::FrameExport(std::string folder, long every)
-    : folder_(std::move(folder)), every_(every) {}
+constexpr const char* kList = "/frames.csv";
+constexpr const char* kHead = "frame,step,time\n";
+
+}  // namespace
+
+FrameExport::FrameExport(std::string folder, long every, std::int64_t steps)
+    : folder_(std::move(folder)), every_(every) {
+  if (!folder_.empty() && steps > 0 && std::filesystem::exists(folder_ + kList)) keep_frames(steps);
+}
+
+void FrameExport::keep_frames(std::int64_t steps) {
+  const std::string path = folder_ + kList, text = read_file(path);
+  const auto refuse = [&] {
+    throw InputError(shown_path(path) + ": row " + std::to_string(frames_) +
+                     ": expected frame, step and time of an export");
+  };
+  if (!text.starts_with(kHead)) refuse();
+
+  // Frames after the state that the run goes on from are made again, and that of the state itself
+  // where it was written as the last one only.
+  std::size_t begin = std::string(kHead).size();
+  for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    long frame = 0;
+    long long step = 0;
+    const std::string row = text.substr(begin, end - begin);
+    if (std::sscanf(row.c_str(), "%ld,%lld", &frame, &step) != 2 || frame != frames_) refuse();
+    if (step > steps || (step == steps && step % every_ != 0)) break;
+    last_step_ = step;
+    ++frames_;
+  }
+  write_file(path, text.substr(0, begin));
+}
 
 void FrameExport::write(std::span<const NamedMesh> meshes, std::int64_t step, double time,
                         bool last) {
@@ -39,9 +70,9 @@ void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t st
   char row[80];
   std::snprintf(row, sizeof row, "%ld,%lld,%.9g\n", frames_, static_cast<long long>(step), time);
   if (frames_ == 0) {
-    write_file(folder_ + "/frames.csv", std::string("frame,step,time\n") + row);
+    write_file(folder_ + kList, std::string(kHead) + row);
   } else {
-    append_file(folder_ + "/frames.csv", row);
+    append_file(folder_ + kList, row);
   }
   last_step_ = step;
   ++frames_;

@@ -14,8 +14,10 @@ namespace icloth {
 /// of each, as does a comment in every file. The last state is also written as last.obj.
 class FrameExport {
  public:
-  /// `folder` is made when the first frame is written; empty: nothing is written.
-  FrameExport(std::string folder, long every);
+  /// `folder` is made when the first frame is written; empty: nothing is written. A run that goes
+  /// on after `steps` steps keeps the frames of these that frames.csv lists, and numbers its own
+  /// after them. Throws InputError where the list is not one.
+  FrameExport(std::string folder, long every, std::int64_t steps = 0);
 
   /// Whether the state after that many steps is written; `last`: it is that at the end of the run.
   bool wants(std::int64_t step, bool last) const {
@@ -28,6 +30,7 @@ class FrameExport {
  private:
   void write_frame(std::span<const NamedMesh> meshes, std::int64_t step, double time,
                    const std::string& comment);
+  void keep_frames(std::int64_t steps);
 
   std::string folder_;
   std::int64_t every_;

@@ -108,11 +108,8 @@ std::uint64_t hash_from(const JsonValue& value) {
   return hash;
 }
 
-}  // namespace
-
-Recording load_recording(const std::string& path) {
-  const nlohmann::json json = read_json(path);
-  JsonObject root(JsonValue(json, shown_path(path)));
+Recording recording_from(const nlohmann::json& json, const std::string& name) {
+  JsonObject root(JsonValue(json, name));
   root.required("icloth_recording").integer(1, 1);
   Recording recording;
 
@@ -129,6 +126,16 @@ Recording load_recording(const std::string& path) {
   recording.final_hash = hash_from(root.required("final_hash"));
   root.finish();
   return recording;
+}
+
+}  // namespace
+
+Recording load_recording(const std::string& path) {
+  return recording_from(read_json(path), shown_path(path));
+}
+
+Recording parse_recording(std::string_view text, const std::string& name) {
+  return recording_from(parse_json(text, name), name);
 }
 
 void check_recording(const Recording& recording, const Scene& scene, const std::string& path) {
@@ -150,7 +157,7 @@ void check_recording(const Recording& recording, const Scene& scene, const std::
   }
 }
 
-void save_recording(const Recording& recording, const std::string& path) {
+std::string recording_text(const Recording& recording) {
   // The object is written by hand around its steps, to have one line for each of them.
   Json head;
   head["icloth_recording"] = 1;
@@ -176,7 +183,11 @@ void save_recording(const Recording& recording, const std::string& path) {
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, recording.final_hash);
   text += "], \"final_hash\": \"" + std::string(hash) + "\"}\n";
-  write_file(path, text);
+  return text;
+}
+
+void save_recording(const Recording& recording, const std::string& path) {
+  write_file(path, recording_text(recording));
 }
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/vec.h"
@@ -83,9 +84,13 @@ struct Recording {
 
 /// JSON, one line a step. Throws InputError naming file and element.
 Recording load_recording(const std::string& path);
+/// The same from a text; `name` stands for the file in messages.
+Recording parse_recording(std::string_view text, const std::string& name);
 /// Throws InputError naming step and event of the first grab of a face that the scene's cloths do
 /// not have, as in a recording of another scene.
 void check_recording(const Recording& recording, const Scene& scene, const std::string& path);
+/// The text of a recording's file.
+std::string recording_text(const Recording& recording);
 /// Writes a temporary file beside `path` and renames it.
 void save_recording(const Recording& recording, const std::string& path);
 

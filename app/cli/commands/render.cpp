@@ -173,7 +173,7 @@ int run_render(const RenderOptions& options) {
 
   // The last accepted state is kept for the picture; a refused one adds its offending faces.
   Shown shown;
-  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+  job.watch = [&](const Simulator& simulator, const StepReport* report, bool) {
     if (report) stats.add(*report);
     if (report && !report->accepted)
       shown.marked_faces = faces_of_pairs(world.face, report->offending);

@@ -39,7 +39,7 @@ int run_replay(const ReplayOptions& options) {
 
   set_thread_count(options.threads);
   StatisticsFile stats(options.stats_file);
-  job.watch = [&](const Simulator&, const StepReport* report) {
+  job.watch = [&](const Simulator&, const StepReport* report, bool) {
     if (report) stats.add(*report);
   };
 

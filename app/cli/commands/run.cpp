@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
@@ -16,14 +17,20 @@
 namespace icloth {
 namespace {
 
+/// Refuses a file in a folder that there is not.
+void check_folder(const std::string& option, const std::string& file) {
+  const std::filesystem::path path(file);
+  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
+    throw InputError(option + " " + shown_path(file) + ": there is no folder " +
+                     in_quotes(path.parent_path().string()));
+}
+
 /// Refuses outputs that cannot work before anything takes time.
 void check(const RunOptions& options) {
   if (!options.exports.empty() && options.out.empty())
     throw InputError("--export " + options.exports.front() + ": expected --out DIR with it");
-  const std::filesystem::path record(options.record_file);
-  if (record.has_parent_path() && !std::filesystem::is_directory(record.parent_path()))
-    throw InputError("--record " + shown_path(options.record_file) + ": there is no folder " +
-                     in_quotes(record.parent_path().string()));
+  check_folder("--record", options.record_file);
+  check_folder("--checkpoint", options.checkpoint_file);
 }
 
 /// The command that repeats a run up to a failed step.
@@ -87,37 +94,46 @@ Recording begin_recording(const SimulationOptions& common, Build build) {
 /// The files that are written while a run goes.
 class RunFiles {
  public:
-  explicit RunFiles(const RunOptions& options)
-      : stats_(options.stats_file), frames_(options.out, options.every) {}
+  /// A run that goes on after `steps` steps adds to the files of the one before.
+  RunFiles(const RunOptions& options, std::int64_t steps)
+      : stats_(options.stats_file, steps),
+        frames_(options.out, options.every, steps),
+        step_(steps) {}
 
   /// Takes the start state, without a report, or the state after a step.
-  void add(const HeadlessJob& job, const Simulator& simulator, const StepReport* report) {
+  void add(const HeadlessJob& job, const Simulator& simulator, const StepReport* report,
+           bool last) {
     if (report) stats_.add(*report);
 
     // A refused step that ends the run leaves the state of the step before as the last one.
     const bool stopped = report && !report->accepted && job.stop_on_failure;
     if (report && !stopped) ++step_;
-    const bool last = stopped || step_ == job.steps;
     if (!frames_.wants(step_, last)) return;
     simulator.positions(positions_);
     frames_.write(named_meshes(*job.scene, positions_, job.origin.layouts).meshes, step_,
                   simulator.time(), last);
   }
 
+  std::int64_t steps() const { return step_; }
   void finish(const RunStatistics& statistics) { stats_.finish(statistics); }
 
  private:
   StatisticsFile stats_;
   FrameExport frames_;
   std::vector<Vec3f> positions_;
-  long step_ = 0;
+  std::int64_t step_;
 };
 
 /// Prints what the options ask for about the end of a run. A failure tells how to repeat it.
-void print_end(const RunOptions& options, Build build, const HeadlessResult& result) {
+/// `steps` is the number of those that the state is after.
+void print_end(const RunOptions& options, Build build, std::int64_t steps,
+               const HeadlessResult& result) {
   if (!options.simulation.quiet)
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
   if (options.profile) print_profile(result.statistics);
+  if (result.interrupted)
+    std::fprintf(stderr, "icloth: ended by %s after %lld steps; what was asked for is written\n",
+                 result.interrupted, static_cast<long long>(steps));
   if (!result.refused.empty())
     std::fprintf(stderr, "icloth: repeat with: %s\n",
                  repeat_command(options, build, result.refused.front().step + 1).c_str());
@@ -130,13 +146,24 @@ int run_run(const RunOptions& options) {
   Recording input;
   HeadlessJob job = make_job(options, input);
   Recording record = begin_recording(options.simulation, job.build);
-  if (!options.record_file.empty()) job.record = &record;
+  job.interruptible = true;
+
+  // A checkpoint holds the input up to it, so it needs the recording as well.
+  if (!options.record_file.empty() || !options.checkpoint_file.empty()) job.record = &record;
+  job.checkpoint_file = options.checkpoint_file;
+  job.checkpoint_every = options.checkpoint_every;
+  std::optional<Checkpoint> resumed;
+  if (!options.resume_file.empty()) {
+    resumed = load_checkpoint(options.resume_file);
+    job.resume = &*resumed;
+    job.resume_file = options.resume_file;
+  }
 
   // Statistics and frames are written while the run goes.
   set_thread_count(options.simulation.threads);
-  RunFiles files(options);
-  job.watch = [&](const Simulator& simulator, const StepReport* report) {
-    files.add(job, simulator, report);
+  RunFiles files(options, resumed ? resumed->steps() : 0);
+  job.watch = [&](const Simulator& simulator, const StepReport* report, bool last) {
+    files.add(job, simulator, report, last);
   };
   profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
@@ -145,8 +172,8 @@ int run_run(const RunOptions& options) {
 
   // The rest is written at its end.
   files.finish(result.statistics);
-  if (job.record) save_recording(record, options.record_file);
-  print_end(options, job.build, result);
+  if (!options.record_file.empty()) save_recording(record, options.record_file);
+  print_end(options, job.build, files.steps(), result);
   return result.clean() ? 0 : 1;
 }
 

@@ -16,6 +16,9 @@ struct RunOptions {
   std::string stats_file;            ///< .csv or .json; empty: none
   std::string input_file;            ///< recording whose drags are applied; empty: the script
   std::string record_file;           ///< the run is saved here; empty: not
+  std::string checkpoint_file;       ///< the state is saved here; empty: not
+  long checkpoint_every = 100;       ///< steps
+  std::string resume_file;           ///< checkpoint to go on from; empty: from the start
   std::string on_failure = "stop";   ///< stop or continue
   bool profile = false;              ///< print the time of every primitive
 };

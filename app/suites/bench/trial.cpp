@@ -51,7 +51,7 @@ void run(HeadlessJob& job, long every, int samples, Trial& now) {
   job.steps = every * samples;
 
   // Counts are means over the steps, errors are the worst of all steps.
-  job.watch = [&](const Simulator& simulator, const StepReport* report) {
+  job.watch = [&](const Simulator& simulator, const StepReport* report, bool) {
     if (!report) return;
     ms += report->ms_total;
     const double share = 1 / static_cast<double>(job.steps);

@@ -1,6 +1,5 @@
 // The built program, run as a user runs it: exit codes, messages, files.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,76 +8,16 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tests/app/cli/program.h"
+
 namespace fs = std::filesystem;
+using icloth::testing::Cli;
+using icloth::testing::contains;
+using icloth::testing::count_lines;
+using icloth::testing::Outcome;
+using icloth::testing::read;
 
 namespace {
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::size_t count_lines(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-/// Every test has an empty folder of its own, where the program runs.
-class Cli : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    base_ = fs::path(::testing::TempDir()) / ("icloth_cli_" + std::string(info->name()));
-    fs::remove_all(base_);
-    fs::create_directories(folder_ = base_ / "here");
-  }
-  void TearDown() override {
-    if (!HasFailure()) fs::remove_all(base_);
-  }
-
-  /// `arguments` as typed into a shell, where `> FILE` leads the output elsewhere; `environment` as
-  /// VAR=VALUE words before the program.
-  Outcome icloth(const std::string& arguments, const std::string& environment = "") const {
-    const fs::path out = base_ / "out", err = base_ / "err";
-    const std::string command = "cd '" + folder_.string() + "' && { env " + environment +
-                                " timeout 100 '" + ICLOTH_PROGRAM "' " + arguments + " ; } > '" +
-                                out.string() + "' 2> '" + err.string() + "' < /dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-  }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-  }
-
-  /// Exit code 2, one line on stderr, nothing on stdout, no file made.
-  void expect_bad_input(const std::string& arguments, const std::string& part) const {
-    const std::size_t before = files();
-    const Outcome outcome = icloth(arguments);
-    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("icloth: ")) << arguments << "\n" << outcome.err;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << arguments << "\n" << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, part)) << arguments << "\n" << outcome.err;
-    EXPECT_EQ(outcome.out, "") << arguments;
-    EXPECT_EQ(files(), before) << arguments;
-  }
-
-  fs::path folder_;
-
- private:
-  fs::path base_;
-};
 
 /// A small sheet 1 mm above a ball; the ball is wide enough to catch it.
 constexpr const char* kDrop = R"({
@@ -489,56 +428,4 @@ TEST_F(Cli, RenderDrawsTheSameByInteropAndByHost) {
     EXPECT_EQ(cuda.code, 0) << cuda.err;
   }
   EXPECT_EQ(read(folder_ / "interop.png"), read(folder_ / "host.png"));
-}
-
-TEST_F(Cli, PanelsOfAMeshAreSewnWhereTheirBordersMeet) {
-  // Two sheets of 3 × 6 squares of 1 cm, 2 mm apart.
-  std::string mesh;
-  for (const double x : {0.0, 0.032})
-    for (int j = 0; j <= 6; ++j)
-      for (int i = 0; i <= 3; ++i)
-        mesh += "v " + std::to_string(x + 0.01 * i) + " " + std::to_string(0.01 * j) + " 0\n";
-  for (const int first : {1, 29})
-    for (int j = 0; j < 6; ++j)
-      for (int i = 0; i < 3; ++i) {
-        const int v = first + 4 * j + i;
-        mesh += "f " + std::to_string(v) + " " + std::to_string(v + 1) + " " +
-                std::to_string(v + 5) + " " + std::to_string(v + 4) + "\n";
-      }
-  write("panels.obj", mesh);
-
-  // The welded garment has 7 vertices less, and says what was sewn.
-  const Outcome sewn = icloth("sew panels.obj --within 4mm --report --out sewn.obj");
-  EXPECT_EQ(sewn.code, 0) << sewn.err;
-  EXPECT_TRUE(contains(sewn.out, "panel0:panel1")) << sewn.out;
-  EXPECT_TRUE(contains(sewn.out, "2 panels, 1 seams; 14 of 36 border vertices")) << sewn.out;
-  EXPECT_EQ(icloth("check sewn.obj").code, 0);
-  std::ifstream file(folder_ / "sewn.obj");
-  std::size_t vertices = 0;
-  for (std::string line; std::getline(file, line);) vertices += line.starts_with("v ") ? 1 : 0;
-  EXPECT_EQ(vertices, 49u);
-
-  // The other form is a scene whose seam closes while it runs.
-  EXPECT_EQ(icloth("sew panels.obj --within 0.4cm --out open.json").code, 0);
-  const Outcome run = icloth("run open.json --steps 200");
-  EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_TRUE(contains(run.err, "panel0:panel1")) << run.err;
-
-  // What cannot be sewn is told in one line.
-  expect_bad_input("sew panels.obj --within 1mm --quiet --out none.obj", "no borders within 1 mm");
-  expect_bad_input("sew panels.obj --within 4 --out none.obj", "--within");
-  expect_bad_input("sew panels.obj --rest panels.obj --out none.obj", "--within");
-}
-
-TEST_F(Cli, ADeliveredDressIsSewnOnItsBody) {
-  const char* folder = std::getenv("ICLOTH_DATA");
-  const std::string data = folder ? folder : ICLOTH_DATA_DEFAULT;
-  if (!fs::exists(data + "/garments/dress_draped.obj"))
-    GTEST_SKIP() << "no reference data in " << data;
-  const Outcome sewn = icloth("sew '" + data + "/garments/dress_draped.obj' --rest '" + data +
-                              "/garments/dress_rest.obj' --body '" + data +
-                              "/bodies/rumba.obj' --within 4mm --report --out dress.obj");
-  EXPECT_EQ(sewn.code, 0) << sewn.err;
-  EXPECT_TRUE(contains(sewn.out, "14 panels, ")) << sewn.out;
-  EXPECT_TRUE(contains(icloth("check dress.obj").out, "intersecting pairs 0"));
 }
