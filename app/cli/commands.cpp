@@ -117,8 +117,11 @@ void Commands::add_run() {
 
   // The remaining options are outputs, inputs, and what to do after a refused step.
   command->add_option("--out", run.out, "folder of exported frames");
-  command->add_option("--export", run.exports, "format of the frames: obj")
-      ->check(CLI::IsMember({"obj"}))
+  command
+      ->add_option("--export", run.exports,
+                   "format of the frames: obj, ply, pc2 or mdd; repeatable")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(std::begin(kFrameFormats), std::end(kFrameFormats))))
       ->allow_extra_args(false);
   command->add_option("--every", run.every, "export each K-th step")
       ->check(CLI::Range(1L, 1000000L));

@@ -54,6 +54,16 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   return contents;
 }
 
+std::string read_head(const std::string& path, std::size_t bytes) {
+  regular_file_size(path);
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file) fail(path, "cannot be opened");
+  std::string contents(bytes, '\0');
+  contents.resize(std::fread(contents.data(), 1, contents.size(), file.get()));
+  if (std::ferror(file.get())) fail(path, "cannot be read");
+  return contents;
+}
+
 bool lies_below(const std::string& path, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error, no_folder;

@@ -15,6 +15,9 @@ std::uint64_t regular_file_size(const std::string& path);
 /// larger than `max_bytes`.
 std::string read_file(const std::string& path, std::uint64_t max_bytes = std::uint64_t{1} << 34);
 
+/// The first bytes of a file, fewer where it is shorter. Throws InputError as read_file does.
+std::string read_head(const std::string& path, std::size_t bytes);
+
 /// Whether a path lies in a folder or below it, after all links of both have been followed; empty
 /// is the current folder. False where links go round, and for a path with a zero byte, at which the
 /// system would end it. Nothing is opened.

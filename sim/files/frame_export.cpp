@@ -1,5 +1,6 @@
 #include "sim/files/frame_export.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -16,9 +17,17 @@ constexpr const char* kHead = "frame,step,time\n";
 
 }  // namespace
 
-FrameExport::FrameExport(std::string folder, long every, std::int64_t steps)
-    : folder_(std::move(folder)), every_(every) {
+FrameExport::FrameExport(std::string folder, long every, std::span<const FrameFormat> formats,
+                         std::int64_t steps)
+    : folder_(std::move(folder)),
+      every_(every),
+      formats_(formats.begin(), formats.end()),
+      caches_(folder_) {
   if (!folder_.empty() && steps > 0 && std::filesystem::exists(folder_ + kList)) keep_frames(steps);
+}
+
+bool FrameExport::has(FrameFormat format) const {
+  return std::ranges::find(formats_, format) != formats_.end();
 }
 
 void FrameExport::keep_frames(std::int64_t steps) {
@@ -35,12 +44,16 @@ void FrameExport::keep_frames(std::int64_t steps) {
   for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     long frame = 0;
     long long step = 0;
+    double time = 0;
     const std::string row = text.substr(begin, end - begin);
-    if (std::sscanf(row.c_str(), "%ld,%lld", &frame, &step) != 2 || frame != frames_) refuse();
+    if (std::sscanf(row.c_str(), "%ld,%lld,%lf", &frame, &step, &time) != 3 || frame != frames_)
+      refuse();
     if (step > steps || (step == steps && step % every_ != 0)) break;
     last_step_ = step;
     ++frames_;
+    if (step % every_ == 0) even_times_.push_back(time);
   }
+  kept_ = static_cast<std::int64_t>(even_times_.size());
   write_file(path, text.substr(0, begin));
 }
 
@@ -50,7 +63,11 @@ void FrameExport::write(std::span<const NamedMesh> meshes, std::int64_t step, do
   std::snprintf(comment, sizeof comment, "step %lld, time %.9g s", static_cast<long long>(step),
                 time);
   if (step != last_step_) write_frame(meshes, step, time, comment);
-  if (last) write_obj(folder_ + "/last.obj", meshes, comment);
+  if (!last) return;
+
+  // The head of an MDD file has all times, so it is made when they are known.
+  if (has(FrameFormat::obj)) write_obj(folder_ + "/last.obj", meshes, comment);
+  if (has(FrameFormat::mdd)) caches_.write_mdd(even_times_);
 }
 
 void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t step, double time,
@@ -63,8 +80,13 @@ void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t st
                        error.message() + ")");
   }
   char name[32];
-  std::snprintf(name, sizeof name, "/frame_%05ld.obj", frames_);
-  write_obj(folder_ + name, meshes, comment);
+  std::snprintf(name, sizeof name, "/frame_%05ld", frames_);
+  if (has(FrameFormat::obj)) write_obj(folder_ + name + ".obj", meshes, comment);
+  if (has(FrameFormat::ply)) write_ply(folder_ + name + ".ply", meshes, comment);
+  if (step % every_ == 0) {
+    if (has(FrameFormat::pc2) || has(FrameFormat::mdd)) caches_.append(meshes, kept_);
+    even_times_.push_back(time);
+  }
 
   // The list names a frame only when its file is complete.
   char row[80];

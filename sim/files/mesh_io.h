@@ -71,6 +71,11 @@ struct NamedMesh {
 void write_obj(const std::string& path, std::span<const NamedMesh> objects,
                const std::string& comment = "");
 
+/// One mesh of all objects, binary, little endian: positions in single precision, bit for bit. A
+/// comment for each object gives its name and its first and number of vertices and faces.
+void write_ply(const std::string& path, std::span<const NamedMesh> objects,
+               const std::string& comment = "");
+
 /// A cloth with material coordinates: `v` with 9 significant digits, `vt` with 12 in metres, one
 /// group for each run of faces of one piece. `piece` (F) are numbers in `names`.
 void write_cloth_obj(const std::string& path, const TriangleMesh& mesh,

@@ -7,8 +7,10 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 
 #include "sim/files/error.h"
+#include "sim/files/file_io.h"
 #include "sim/files/mesh_formats.h"
 #include "sim/files/polygon.h"
 #include "sim/files/text.h"
@@ -325,6 +327,45 @@ class PlyParser {
 
 MeshFile parse_ply(std::string_view bytes, const std::string& path) {
   return PlyParser(bytes, path).parse();
+}
+
+void write_ply(const std::string& path, std::span<const NamedMesh> objects,
+               const std::string& comment) {
+  // A comment is the only place for what one mesh has no word for.
+  std::ostringstream head;
+  head << "ply\nformat binary_little_endian 1.0\n";
+  if (!comment.empty()) head << "comment " << comment << "\n";
+  std::size_t vertices = 0, faces = 0;
+  for (const NamedMesh& object : objects) {
+    head << "comment object " << one_line(object.name) << " " << vertices << " "
+         << object.positions.size() << " " << faces << " " << object.faces.size() << "\n";
+    vertices += object.positions.size();
+    faces += object.faces.size();
+  }
+  head << "element vertex " << vertices
+       << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << faces
+       << "\nproperty list uchar int vertex_indices\nend_header\n";
+
+  // Positions come first, then a face as its count of corners and their numbers.
+  std::string text = head.str();
+  text.reserve(text.size() + vertices * sizeof(Vec3f) + faces * 13);
+  const auto add = [&text](const void* data, std::size_t bytes) {
+    text.append(static_cast<const char*>(data), bytes);
+  };
+  for (const NamedMesh& object : objects)
+    add(object.positions.data(), object.positions.size_bytes());
+  std::int32_t first = 0;
+  for (const NamedMesh& object : objects) {
+    for (const Triangle& face : object.faces) {
+      text += '\3';
+      for (const Index v : face) {
+        const std::int32_t corner = first + v;
+        add(&corner, sizeof corner);
+      }
+    }
+    first += static_cast<std::int32_t>(object.positions.size());
+  }
+  write_file(path, text);
 }
 
 }  // namespace icloth

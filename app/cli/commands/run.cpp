@@ -91,13 +91,24 @@ Recording begin_recording(const SimulationOptions& common, Build build) {
   return record;
 }
 
+/// The formats that --export names; OBJ where it names none.
+std::vector<FrameFormat> export_formats(const RunOptions& options) {
+  if (options.exports.empty()) return {FrameFormat::obj};
+  std::vector<FrameFormat> formats;
+  for (const std::string& name : options.exports) {
+    const auto found = std::ranges::find(kFrameFormats, name);
+    formats.push_back(static_cast<FrameFormat>(found - std::begin(kFrameFormats)));
+  }
+  return formats;
+}
+
 /// The files that are written while a run goes.
 class RunFiles {
  public:
   /// A run that goes on after `steps` steps adds to the files of the one before.
   RunFiles(const RunOptions& options, std::int64_t steps)
       : stats_(options.stats_file, steps),
-        frames_(options.out, options.every, steps),
+        frames_(options.out, options.every, export_formats(options), steps),
         step_(steps) {}
 
   /// Takes the start state, without a report, or the state after a step.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
@@ -51,6 +52,82 @@ TEST(FrameExport, ALastStateThatIsAFrameIsNotWrittenTwice) {
   EXPECT_TRUE(std::filesystem::exists(folder.path("out/last.obj")));
 }
 
+/// The positions of a step of run() below.
+std::vector<Vec3f> corners_at(std::int64_t step) {
+  std::vector<Vec3f> moved = kCorners;
+  moved[0] = {0.1f * static_cast<float>(step), 1e-30f, -1.0f / 3};
+  return moved;
+}
+
+/// Exports steps from `first` on of two objects whose names differ in a character that files lack.
+void run_two(FrameExport& frames, std::int64_t first, std::int64_t steps) {
+  for (std::int64_t step = first; step <= steps; ++step) {
+    const std::vector<Vec3f> moved = corners_at(step), still = kCorners;
+    const std::vector<NamedMesh> meshes = {{"cloth:a/b", moved, kFace},
+                                           {"cloth:a:b", still, kFace}};
+    if (frames.wants(step, step == steps))
+      frames.write(meshes, step, 0.01 * static_cast<double>(step), step == steps);
+  }
+}
+
+constexpr FrameFormat kCaches[] = {FrameFormat::pc2, FrameFormat::mdd};
+constexpr FrameFormat kPly[] = {FrameFormat::ply};
+
+TEST(FrameExport, PointCachesAreReadBackBitForBit) {
+  const TemporaryFolder folder;
+  FrameExport frames(folder.path("out"), 5, kCaches);
+  run_two(frames, 0, 23);
+
+  // Step 23 ends the run between two frames and is in no cache, whose frames are even.
+  for (const char* format : {"pc2", "mdd"})
+    for (const char* name : {"cloth_a_b.", "cloth_a_b_2."}) {
+      const PointCache cache = read_point_cache(folder.path("out/") + name + format, 3);
+      ASSERT_EQ(cache.frames.size(), 5u);
+      EXPECT_TRUE(cache.unused.empty());
+      for (std::int64_t f = 0; f < 5; ++f)
+        EXPECT_EQ(cache.frames[static_cast<std::size_t>(f)],
+                  std::string(name) == "cloth_a_b." ? corners_at(5 * f) : kCorners);
+    }
+  EXPECT_NEAR(read_point_cache(folder.path("out/cloth_a_b.mdd"), 3).frame_rate, 20, 1e-4);
+  EXPECT_EQ(read_mesh(folder.path("out/cloth_a_b.obj")).mesh.faces, kFace);
+}
+
+TEST(FrameExport, PlyIsReadBackBitForBit) {
+  const TemporaryFolder folder;
+  FrameExport frames(folder.path("out"), 10, kPly);
+  run_two(frames, 0, 10);
+  const TriangleMesh mesh = read_mesh(folder.path("out/frame_00001.ply")).mesh;
+  ASSERT_EQ(mesh.positions.size(), 6u);
+  const std::vector<Vec3f> moved = corners_at(10);
+  for (std::size_t v = 0; v < 3; ++v) {
+    EXPECT_EQ(convert<float>(mesh.positions[v]), moved[v]);
+    EXPECT_EQ(convert<float>(mesh.positions[3 + v]), kCorners[v]);
+  }
+  EXPECT_EQ(mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+}
+
+TEST(FrameExport, CachesThatAreContinuedEqualThoseOfOneRun) {
+  const TemporaryFolder folder;
+  FrameExport whole(folder.path("whole"), 5, kCaches);
+  run_two(whole, 0, 40);
+
+  // The first run goes to step 23, and its state after step 20 is gone on from.
+  {
+    FrameExport first(folder.path("cut"), 5, kCaches);
+    run_two(first, 0, 23);
+  }
+  FrameExport second(folder.path("cut"), 5, kCaches, 17);
+  run_two(second, 17, 40);
+  for (const char* name : {"cloth_a_b.pc2", "cloth_a_b.mdd", "cloth_a_b_2.pc2", "frames.csv"})
+    EXPECT_EQ(read_file(folder.path("cut/") + name), read_file(folder.path("whole/") + name))
+        << name;
+
+  // A cache of another mesh is refused.
+  write_file(folder.path("cut/cloth_a_b.pc2"), std::string(500, 'x'));
+  FrameExport third(folder.path("cut"), 5, kCaches, 17);
+  EXPECT_THROW(run_two(third, 20, 40), InputError);
+}
+
 TEST(FrameExport, WithoutAFolderNothingIsWanted) {
   EXPECT_FALSE(FrameExport("", 1).wants(0, true));
 }
@@ -72,6 +149,23 @@ class FullDisk {
 
 std::size_t files_in(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(FrameExport, AFullDiskLeavesWholeFramesInACache) {
+  // Each frame of both objects takes 36 bytes, and no file can have more than 200.
+  const TemporaryFolder folder;
+  FrameExport frames(folder.path("out"), 1, kCaches);
+  std::filesystem::create_directories(folder.path("out"));
+  {
+    const FullDisk full(200);
+    EXPECT_THROW(run_two(frames, 0, 100), InputError);
+  }
+  for (const char* name : {"cloth_a_b.pc2", "cloth_a_b_2.pc2"}) {
+    const PointCache cache = read_point_cache(folder.path("out/") + name, 3);
+    ASSERT_EQ(cache.frames.size(), 4u);
+  }
+  const std::string list = read_file(folder.path("out/frames.csv"));
+  EXPECT_EQ(std::ranges::count(list, '\n'), 5) << list;
 }
 
 TEST(OutputFile, IsWholeOrNotThere) {
