@@ -204,7 +204,7 @@ def bishop_blouse():
 def bishop_skirt():
     """Three quarters of a circle, in four gores."""
     pattern = Pattern('bishop_skirt')
-    gores = skirt_gores(67.5, 15.5, 60)
+    gores = skirt_gores(67.5, 14.2, 60)
     blocks.place_round(gores, 119, 9, 35)
     pattern.add(*gores)
     blocks.sew_round(pattern, gores)
