@@ -19,14 +19,16 @@ constexpr int kStepsBetweenRests = 20;  // then the velocities are halved
 constexpr int kStepsBetweenLooks = 10;  // at the strain
 constexpr double kClosingBending = 30;  // times as stiff, so that no hem flips or rolls up
 constexpr double kClosedStrain = 0.05;  // of a garment whose seams are drawn together
-constexpr int kStallSteps = 50;         // it is as closed as it gets when in so many steps …
-constexpr double kStallChange = 0.01;   // … the strain changed by no more than this share
-constexpr int kMostRefusals = 5;        // one after the other
-constexpr double kGrowTime = 1;         // of bodies that start contracted [s]
-constexpr double kHoldStiffness = 1;    // of a held vertex [N/m]
+constexpr double kWeightless = 0.1;     // time for the seams to meet [s]
+constexpr double kLightWeight = 0.3;  // share of the weight after that, so that no wide skirt rises
+constexpr int kStallSteps = 50;       // it is as closed as it gets when in so many steps …
+constexpr double kStallChange = 0.01;  // … the strain changed by no more than this share
+constexpr int kMostRefusals = 5;       // one after the other
+constexpr double kGrowTime = 1;        // of bodies that start contracted [s]
+constexpr double kHoldStiffness = 1;   // of a held vertex [N/m]
 
-/// Without weight and wind, stiffer in bending, and with the integrator that takes most energy
-/// away.
+/// Without weight, at first, and wind, stiffer in bending, and with the integrator that takes most
+/// energy away.
 Parameters dressing_parameters(const Parameters& own) {
   Parameters p = own;
   p.step.time_step = kTimeStep;
@@ -203,6 +205,7 @@ class Dressing {
         gauge_(world_, room_, garment_),
         holds_(world_, room_, garment_),
         gravity_(scene.parameters.gravity),
+        bend_scale_(scene.parameters.material.bend_scale),
         simulator_(make_simulator(Build::cpu32, room_.scene)),
         watch_(watch) {
     report_.garment = scene.cloths[at(garment_.cloth)].name;
@@ -230,12 +233,15 @@ class Dressing {
   }
 
  private:
-  /// The seams draw together without weight, until the strain is small or stays as it is.
+  /// The seams draw together, first without weight and then with a part of it, until the strain is
+  /// small or stays as it is.
   void close() {
     const int most = static_cast<int>(std::lround(garment_.plan.closing / kTimeStep));
+    const int weightless = static_cast<int>(std::lround(kWeightless / kTimeStep));
     std::vector<InputEvent> events = holds_.events(InputEvent::Kind::grab, *simulator_);
     double before = strain_ = gauge_.largest(simulator_->snapshot());
     for (int k = 1; k <= most; ++k) {
+      if (k == weightless + 1) set_weight(kLightWeight, kClosingBending);
       step(events, most, false);
       ++report_.closing_steps;
       if (k % kStepsBetweenLooks == 0) strain_ = gauge_.largest(simulator_->snapshot());
@@ -250,10 +256,7 @@ class Dressing {
 
   /// Weight comes on, and the holds go.
   void settle() {
-    Parameters parameters = simulator_->parameters();
-    parameters.gravity = gravity_;
-    parameters.material.bend_scale /= kClosingBending;
-    simulator_->set_parameters(parameters);
+    set_weight(1, 1);
     const int most = static_cast<int>(std::lround(garment_.plan.settling / kTimeStep));
     std::vector<InputEvent> events = holds_.events(InputEvent::Kind::release, *simulator_);
     for (int k = 1; k <= most; ++k) {
@@ -262,6 +265,16 @@ class Dressing {
       if (k % kStepsBetweenLooks == 0) strain_ = gauge_.largest(simulator_->snapshot());
       events.clear();
     }
+  }
+
+  /// From now on the garment has this share of its weight, and is so many times as stiff in bending
+  /// as it will be.
+  void set_weight(double share, double bending) {
+    Parameters parameters = simulator_->parameters();
+    parameters.gravity = {
+        .x = share * gravity_.x, .y = share * gravity_.y, .z = share * gravity_.z};
+    parameters.material.bend_scale = bend_scale_ * bending;
+    simulator_->set_parameters(parameters);
   }
 
   void step(const std::vector<InputEvent>& events, int most, bool settling) {
@@ -292,6 +305,7 @@ class Dressing {
   StrainGauge gauge_;
   Holds holds_;
   GravityParameters gravity_;
+  double bend_scale_;
   std::unique_ptr<Simulator> simulator_;
   const DressingWatch& watch_;
   DressingReport report_;

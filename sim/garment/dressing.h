@@ -1,5 +1,6 @@
-// Puts garments on before time 0: their seams are drawn together round the body without weight,
-// then they settle under it. Nothing goes through anything meanwhile, as in every other step.
+// Puts garments on before time 0: their seams are drawn together round the body, at first without
+// weight and then with a part of it, and the garments settle under the whole of it. Nothing goes
+// through anything meanwhile, as in every other step.
 #pragma once
 
 #include <functional>
@@ -15,8 +16,8 @@ namespace icloth {
 /// How dressing a garment went.
 struct DressingReport {
   std::string garment;         ///< name of its cloth
-  int closing_steps = 0;       ///< without weight
-  int settling_steps = 0;      ///< with weight
+  int closing_steps = 0;       ///< without their weight, or with a part of it
+  int settling_steps = 0;      ///< with all of it
   int refused_steps = 0;       ///< steps that were taken back; the garment went on from rest
   std::int64_t impacts = 0;    ///< that collision handling resolved
   double gathered_share = 0;   ///< of the faces, left out of the strains below

@@ -12,8 +12,8 @@ namespace icloth {
 /// How a garment is put on before time 0 (key "dress" of a cloth).
 struct DressPlan {
   bool on = true;         ///< false: the scene starts with the garment as it is sewn
-  double closing = 2;     ///< longest time without weight, in which its seams draw together [s]
-  double settling = 0.5;  ///< time with weight after that [s]
+  double closing = 2;     ///< longest time in which its seams draw together [s]
+  double settling = 0.5;  ///< time with its whole weight after that [s]
   /// Labels of edges that are held at their height until it settles, "lower_interface" say.
   std::vector<std::string> hold;
 };
