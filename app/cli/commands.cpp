@@ -119,7 +119,7 @@ void Commands::add_run() {
   command->add_option("--out", run.out, "folder of exported frames");
   command
       ->add_option("--export", run.exports,
-                   "format of the frames: obj, ply, pc2 or mdd; repeatable")
+                   "format of the frames: obj, ply, pc2, mdd or usda; repeatable")
       ->check(CLI::IsMember(
           std::vector<std::string>(std::begin(kFrameFormats), std::end(kFrameFormats))))
       ->allow_extra_args(false);

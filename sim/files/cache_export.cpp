@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "sim/files/cache_frames.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/text.h"
@@ -15,7 +16,7 @@
 namespace icloth {
 namespace {
 
-constexpr std::size_t kHeadBytes = 32, kFramesAt = 28;
+constexpr std::size_t kFramesAt = 28;
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -39,7 +40,7 @@ std::string pc2_head(std::size_t vertices) {
     std::int32_t frames = 0;
   } numbers;
   numbers.vertices = static_cast<std::int32_t>(vertices);
-  std::string head(kHeadBytes, '\0');
+  std::string head(kPc2HeadBytes, '\0');
   std::memcpy(head.data(), "POINTCACHE2", 11);
   std::memcpy(head.data() + 12, &numbers, sizeof numbers);
   return head;
@@ -59,8 +60,8 @@ void set_frames(const std::string& path, std::int64_t frames) {
 void keep_frames(const std::string& path, std::size_t vertices, std::int64_t frames) {
   const std::uint64_t size = regular_file_size(path);
   const std::uint64_t expected =
-      kHeadBytes + static_cast<std::uint64_t>(frames) * vertices * sizeof(Vec3f);
-  const std::string here = read_head(path, kHeadBytes);
+      kPc2HeadBytes + static_cast<std::uint64_t>(frames) * vertices * sizeof(Vec3f);
+  const std::string here = read_head(path, kPc2HeadBytes);
   const std::string_view same = std::string_view(here).substr(0, kFramesAt);
   if (!pc2_head(vertices).starts_with(same) || same.size() < kFramesAt || size < expected)
     refuse(path, "expected " + std::to_string(frames) + " frames of " + std::to_string(vertices) +
@@ -83,8 +84,12 @@ void CacheExport::begin(std::span<const NamedMesh> meshes, std::int64_t kept) {
     std::string name = folder_ + "/" + file_name(mesh.name);
     const int number = ++names[name];
     if (number > 1) name.append("_").append(std::to_string(number));
-    const Cache cache{name, mesh.positions.size()};
-    const std::string path = cache.path + ".pc2";
+    const std::string path = name + ".pc2";
+    const CachedMesh cache{mesh.name,
+                           path,
+                           mesh.positions.size(),
+                           {mesh.faces.begin(), mesh.faces.end()},
+                           {mesh.uv.begin(), mesh.uv.end()}};
     if (cache.vertices * sizeof(Vec3f) > std::numeric_limits<std::int32_t>::max())
       refuse(path, std::to_string(cache.vertices) + " vertices, expected fewer in a point cache");
 
@@ -92,7 +97,7 @@ void CacheExport::begin(std::span<const NamedMesh> meshes, std::int64_t kept) {
     if (kept > 0) {
       keep_frames(path, cache.vertices, kept);
     } else {
-      write_obj(cache.path + ".obj", std::span(&mesh, 1), "faces of the point cache");
+      write_obj(name + ".obj", std::span(&mesh, 1), "faces of the point cache");
       write_file(path, pc2_head(cache.vertices));
     }
     caches_.push_back(cache);
@@ -107,39 +112,38 @@ void CacheExport::append(std::span<const NamedMesh> meshes, std::int64_t kept) {
 
   // All files have the frame before one of them counts it.
   for (std::size_t i = 0; i < caches_.size(); ++i)
-    append_file(caches_[i].path + ".pc2",
-                {reinterpret_cast<const char*>(meshes[i].positions.data()),
-                 meshes[i].positions.size_bytes()});
+    append_file(caches_[i].cache, {reinterpret_cast<const char*>(meshes[i].positions.data()),
+                                   meshes[i].positions.size_bytes()});
   ++frames_;
-  for (const Cache& cache : caches_) set_frames(cache.path + ".pc2", frames_);
+  for (const CachedMesh& cache : caches_) set_frames(cache.cache, frames_);
 }
 
 void CacheExport::write_mdd(std::span<const double> times) const {
-  for (const Cache& cache : caches_) {
+  for (const CachedMesh& cache : caches_) {
     // The head has the time of every frame, which is why this file cannot grow.
     std::string bytes;
     append_big_endian(bytes, static_cast<std::uint32_t>(times.size()));
     append_big_endian(bytes, static_cast<std::uint32_t>(cache.vertices));
     for (const double time : times)
       append_big_endian(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(time)));
-    OutputFile file(cache.path + ".mdd");
+    OutputFile file(std::filesystem::path(cache.cache).replace_extension(".mdd").string());
     file.write(bytes);
 
     // Frames are turned one after the other, so that a long run takes no more memory.
-    const std::string path = cache.path + ".pc2";
-    const File frames(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!frames || std::fseek(frames.get(), kHeadBytes, SEEK_SET) != 0)
-      refuse(path, "cannot be read");
+    CacheFrames frames(cache.cache);
     std::vector<std::uint32_t> numbers(3 * cache.vertices);
     for (std::size_t f = 0; f < times.size(); ++f) {
-      if (std::fread(numbers.data(), 4, numbers.size(), frames.get()) != numbers.size())
-        refuse(path, "ends in frame " + std::to_string(f));
+      frames.next(numbers);
       bytes.clear();
       for (const std::uint32_t number : numbers) append_big_endian(bytes, number);
       file.write(bytes);
     }
     file.commit();
   }
+}
+
+void CacheExport::write_usda(std::span<const double> times) const {
+  icloth::write_usda(folder_ + "/scene.usda", caches_, times);
 }
 
 }  // namespace icloth

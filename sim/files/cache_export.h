@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/files/mesh_io.h"
+#include "sim/files/usda_io.h"
 
 namespace icloth {
 
@@ -24,16 +25,14 @@ class CacheExport {
 
   /// Writes NAME.mdd of each cache; `times` are those of its frames [s]. Throws InputError.
   void write_mdd(std::span<const double> times) const;
+  /// Writes scene.usda of all caches. Throws InputError.
+  void write_usda(std::span<const double> times) const;
 
  private:
-  struct Cache {
-    std::string path;  ///< without its extension
-    std::size_t vertices = 0;
-  };
   void begin(std::span<const NamedMesh> meshes, std::int64_t kept);
 
   std::string folder_;
-  std::vector<Cache> caches_;
+  std::vector<CachedMesh> caches_;
   std::int64_t frames_ = 0;
 };
 

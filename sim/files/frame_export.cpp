@@ -65,9 +65,10 @@ void FrameExport::write(std::span<const NamedMesh> meshes, std::int64_t step, do
   if (step != last_step_) write_frame(meshes, step, time, comment);
   if (!last) return;
 
-  // The head of an MDD file has all times, so it is made when they are known.
+  // MDD and USDA have all times before the places, so they are made of the PC2 files at the end.
   if (has(FrameFormat::obj)) write_obj(folder_ + "/last.obj", meshes, comment);
   if (has(FrameFormat::mdd)) caches_.write_mdd(even_times_);
+  if (has(FrameFormat::usda)) caches_.write_usda(even_times_);
 }
 
 void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t step, double time,
@@ -84,7 +85,8 @@ void FrameExport::write_frame(std::span<const NamedMesh> meshes, std::int64_t st
   if (has(FrameFormat::obj)) write_obj(folder_ + name + ".obj", meshes, comment);
   if (has(FrameFormat::ply)) write_ply(folder_ + name + ".ply", meshes, comment);
   if (step % every_ == 0) {
-    if (has(FrameFormat::pc2) || has(FrameFormat::mdd)) caches_.append(meshes, kept_);
+    const bool cached = has(FrameFormat::pc2) || has(FrameFormat::mdd) || has(FrameFormat::usda);
+    if (cached) caches_.append(meshes, kept_);
     even_times_.push_back(time);
   }
 

@@ -12,7 +12,7 @@
 namespace icloth {
 
 /// Formats of exported frames: a file for each frame, or one of each object for all of them.
-enum class FrameFormat { obj, ply, pc2, mdd };
+enum class FrameFormat { obj, ply, pc2, mdd, usda };
 
 /// Writes every K-th state of a run and the last one as frame_00000.obj, frame_00001.obj and so on
 /// (or .ply) into a folder. The frames are numbered consecutively; frames.csv beside them says step

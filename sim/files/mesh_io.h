@@ -64,6 +64,9 @@ struct NamedMesh {
   std::string name;  ///< "cloth:NAME" or "obstacle:NAME"
   std::span<const Vec3f> positions;
   std::span<const Triangle> faces;  ///< indices into positions
+  /// Texture coordinates of the corners of the faces, where the mesh has them. Formats of a
+  /// single frame leave them out.
+  std::span<const std::array<Vec2d, 3>> uv = {};
 };
 
 /// One group per object, coordinates with 9 significant digits; written beside and renamed. The

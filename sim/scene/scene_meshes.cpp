@@ -33,10 +33,10 @@ SceneMeshes named_meshes(const Scene& scene, std::span<const Vec3f> positions,
     const std::span<const Vec3f> simulated = take(cloth.mesh);
     const std::string name = "cloth:" + cloth.name;
     if (layouts.empty() || layouts[c].is_identity()) {
-      result.meshes.push_back({name, simulated, cloth.mesh.faces});
+      result.meshes.push_back({name, simulated, cloth.mesh.faces, cloth.mesh.uv});
     } else {
       result.expanded.push_back(expand(layouts[c], simulated));
-      result.meshes.push_back({name, result.expanded.back(), layouts[c].faces});
+      result.meshes.push_back({name, result.expanded.back(), layouts[c].faces, cloth.mesh.uv});
     }
   }
   for (const Obstacle& obstacle : scene.obstacles)

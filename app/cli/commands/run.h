@@ -9,7 +9,7 @@
 namespace icloth {
 
 /// Names of the formats of --export, in the order of FrameFormat.
-inline constexpr const char* kFrameFormats[] = {"obj", "ply", "pc2", "mdd"};
+inline constexpr const char* kFrameFormats[] = {"obj", "ply", "pc2", "mdd", "usda"};
 
 struct RunOptions {
   SimulationOptions simulation;

@@ -5,12 +5,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <filesystem>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/usda_reader.h"
 
 namespace icloth {
 namespace {
@@ -90,6 +92,51 @@ TEST(FrameExport, PointCachesAreReadBackBitForBit) {
     }
   EXPECT_NEAR(read_point_cache(folder.path("out/cloth_a_b.mdd"), 3).frame_rate, 20, 1e-4);
   EXPECT_EQ(read_mesh(folder.path("out/cloth_a_b.obj")).mesh.faces, kFace);
+}
+
+TEST(FrameExport, UsdaIsReadBackBitForBit) {
+  const TemporaryFolder folder;
+  constexpr FrameFormat kUsda[] = {FrameFormat::usda};
+  FrameExport frames(folder.path("out"), 5, kUsda);
+  const std::vector<std::array<Vec2d, 3>> uv = {{{{0, 0}, {0.5, 0}, {0, 0.25}}}};
+  for (std::int64_t step = 0; step <= 12; ++step) {
+    const std::vector<Vec3f> moved = corners_at(step);
+    const std::vector<NamedMesh> meshes = {{"cloth:a-1", moved, kFace, uv},
+                                           {"cloth:a 1", kCorners, kFace}};
+    if (frames.wants(step, step == 12))
+      frames.write(meshes, step, 0.02 * static_cast<double>(step), step == 12);
+  }
+  const std::string text = read_file(folder.path("out/scene.usda"));
+  testing::UsdaStage stage = testing::UsdaReader(text).read();
+  EXPECT_EQ(stage.metadata["upAxis"], "\"Y\"");
+  EXPECT_EQ(stage.metadata["metersPerUnit"], "1");
+  EXPECT_EQ(stage.metadata["endTimeCode"], "2");
+  EXPECT_EQ(stage.metadata["timeCodesPerSecond"], "10");
+
+  // Names that differ only in what the format does not take stay two.
+  ASSERT_EQ(stage.meshes.size(), 2u);
+  testing::UsdaMesh& mesh = stage.meshes.at("\"cloth_a_1\"");
+  EXPECT_TRUE(stage.meshes.contains("\"cloth_a_1_2\""));
+  EXPECT_EQ(mesh.values["faceVertexCounts"], (std::vector<double>{3}));
+  EXPECT_EQ(mesh.values["faceVertexIndices"], (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(mesh.values["primvars:st"], (std::vector<double>{0, 0, 0.5, 0, 0, 0.25}));
+  ASSERT_EQ(mesh.samples["points"].size(), 3u);
+  for (std::int64_t f = 0; f < 3; ++f) {
+    const std::vector<Vec3f> moved = corners_at(5 * f);
+    const std::vector<double>& points = mesh.samples["points"].at(static_cast<double>(f));
+    ASSERT_EQ(points.size(), 9u);
+    for (std::size_t v = 0; v < 3; ++v)
+      EXPECT_EQ((Vec3f{static_cast<float>(points[3 * v]), static_cast<float>(points[3 * v + 1]),
+                       static_cast<float>(points[3 * v + 2])}),
+                moved[v]);
+
+    // All normals are that of the one face, and the extent holds its corners.
+    const Vec3f n = normalized(cross(moved[1] - moved[0], moved[2] - moved[0]));
+    const std::vector<double>& normals = mesh.samples["normals"].at(static_cast<double>(f));
+    EXPECT_EQ(static_cast<float>(normals[2]), n.z);
+    EXPECT_EQ(mesh.samples["extent"].at(static_cast<double>(f)).size(), 6u);
+    EXPECT_EQ(static_cast<float>(mesh.samples["extent"].at(static_cast<double>(f))[2]), moved[0].z);
+  }
 }
 
 TEST(FrameExport, PlyIsReadBackBitForBit) {
