@@ -55,6 +55,7 @@ struct Clip {
 
 /// Nodes and bones of a body. Without nodes the body has no rig and its mesh is all there is.
 struct Rig {
+  std::vector<std::string> names;    ///< as the file says, not yet fit for a message (nodes)
   std::vector<Index> parent;         ///< smaller than the node's own number, kNone: root (nodes)
   std::vector<Affine> local;         ///< against the parent in the bind pose (nodes)
   std::vector<Index> bone_node;      ///< (bones)

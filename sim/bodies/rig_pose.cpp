@@ -2,39 +2,14 @@
 
 #include <cmath>
 
-#include "sim/bodies/eigen.h"
+#include "sim/bodies/node_pose.h"
 
 namespace icloth {
 namespace {
 
-using Eigen::Matrix3d, Eigen::Quaterniond, Eigen::Vector3d;
+using Eigen::Quaterniond, Eigen::Vector3d;
 
 Quaterniond to_eigen(const RotationKey& r) { return {r.w, r.x, r.y, r.z}; }
-
-/// Scale, then rotation, then translation.
-struct NodePose {
-  Vector3d translation = Vector3d::Zero();
-  Quaterniond rotation = Quaterniond::Identity();
-  Vector3d scale = Vector3d::Ones();
-
-  Affine affine() const {
-    return make_affine(rotation.toRotationMatrix() * scale.asDiagonal(), translation);
-  }
-};
-
-/// The parts of a map. A mirror is a negative scale of x; a map that is flat along an axis has no
-/// rotation that could be found, and shear is lost.
-NodePose parts_of(const Affine& map) {
-  Matrix3d linear = linear_part(map);
-  NodePose pose;
-  pose.translation = Vector3d(map.m[3], map.m[7], map.m[11]);
-  pose.scale = linear.colwise().norm();
-  if (!(pose.scale.minCoeff() > 0)) return pose;
-  if (linear.determinant() < 0) pose.scale.x() = -pose.scale.x();
-  for (int c = 0; c < 3; ++c) linear.col(c) /= pose.scale[c];
-  pose.rotation = Quaterniond(linear).normalized();
-  return pose;
-}
 
 /// The keys around a time: their numbers, and how far the time is from the first to the second.
 template <class Key>
@@ -93,8 +68,7 @@ RotationKey slerp(const RotationKey& a, const RotationKey& b, double s) {
   return {(1 - s) * a.time + s * b.time, q.w(), q.x(), q.y(), q.z()};
 }
 
-void pose_rig(const Rig& rig, const Clip* clip, PlayedMoment moment, std::vector<Affine>& bones,
-              std::vector<double>& morphs) {
+std::vector<Affine> pose_nodes(const Rig& rig, const Clip* clip, PlayedMoment moment) {
   // Each node has its place against its parent from the clip, or keeps that of the bind pose.
   std::vector<Affine> node = rig.local;
   if (clip != nullptr)
@@ -106,7 +80,12 @@ void pose_rig(const Rig& rig, const Clip* clip, PlayedMoment moment, std::vector
   // Parents have smaller numbers, so they are placed before their children.
   for (std::size_t n = 0; n < node.size(); ++n)
     if (rig.parent[n] != kNone) node[n] = node[static_cast<std::size_t>(rig.parent[n])] * node[n];
+  return node;
+}
 
+void pose_rig(const Rig& rig, const Clip* clip, PlayedMoment moment, std::vector<Affine>& bones,
+              std::vector<double>& morphs) {
+  const std::vector<Affine> node = pose_nodes(rig, clip, moment);
   bones.clear();
   for (std::size_t b = 0; b < rig.bone_node.size(); ++b)
     bones.push_back(node[static_cast<std::size_t>(rig.bone_node[b])] * rig.inverse_bind[b]);

@@ -9,6 +9,9 @@ namespace icloth {
 /// Rotation from a to b, both unit quaternions, on the shorter arc; s from 0 to 1.
 RotationKey slerp(const RotationKey& a, const RotationKey& b, double s);
 
+/// Where each node is (nodes) at a moment of the clip. Without a clip (null): in the bind pose.
+std::vector<Affine> pose_nodes(const Rig& rig, const Clip* clip, PlayedMoment moment);
+
 /// Where each bone takes the vertices that it has taken up (bones), and the weight of each morph
 /// target (targets), at a moment of the clip. Without a clip (null): the bind pose.
 ///

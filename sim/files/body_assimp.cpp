@@ -102,6 +102,7 @@ struct MeshReader {
   const aiScene& scene;
   const std::string& path;
   bool use_morph_weights;
+  bool keeps_rig;
   NodePoses poses;
   RigReader& rig;
   TriangleMesh mesh = {};
@@ -112,7 +113,7 @@ struct MeshReader {
       const aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
       add_mesh(part, posed_vertices(part, pose, poses, use_morph_weights),
                shown_path(path) + ": mesh " + excerpt(part.mName.C_Str()), mesh);
-      if (scene.mNumAnimations > 0) rig.add(part, node);
+      if (keeps_rig) rig.add(part, node);
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], pose);
   }
@@ -195,21 +196,29 @@ Body read_with_assimp(const std::string& path) {
     throw InputError(shown_path(path) + ": cannot be read as a body (" + excerpt(reason) + ")");
   }
 
-  // The nodes place the meshes, and the skins bend them. glTF alone says which weights its morph
-  // targets have.
+  // The nodes place the meshes, and the skins bend them; a body with bones keeps them. glTF alone
+  // says which weights its morph targets have.
   const std::string extension = lower_extension(path);
   const bool is_gltf = extension == ".glb" || extension == ".gltf";
   RigReader rig(*scene, path, is_gltf);
-  MeshReader meshes{
-      .scene = *scene, .path = path, .use_morph_weights = is_gltf, .poses = {}, .rig = rig};
+  const std::size_t bones = bones_of(*scene);
+  const bool moves = scene->mNumAnimations > 0, keeps_rig = moves || bones > 0;
+  MeshReader meshes{.scene = *scene,
+                    .path = path,
+                    .use_morph_weights = is_gltf,
+                    .keeps_rig = keeps_rig,
+                    .poses = {},
+                    .rig = rig};
   collect_poses(*scene->mRootNode, aiMatrix4x4(), meshes.poses);
   meshes.add(*scene->mRootNode, aiMatrix4x4());
 
-  // Where nothing moves, vertices at one place stay there; else they have to move together.
-  const bool moves = scene->mNumAnimations > 0;
-  Body body{.mesh = std::move(meshes.mesh), .bones = bones_of(*scene), .morphs = morphs_of(*scene)};
-  merge_coinciding(moves ? rig.merge() : merge_places(body.mesh.positions), body.mesh);
-  if (moves) body.rig = rig.take(*scene);
+  // In a file without clips vertices at one place stay there, and follow the bones of the first of
+  // them when a motion from elsewhere is played; else they have to move together.
+  Body body{.mesh = std::move(meshes.mesh), .bones = bones, .morphs = morphs_of(*scene)};
+  const std::vector<Index> number = moves ? rig.merge() : merge_places(body.mesh.positions);
+  merge_coinciding(number, body.mesh);
+  if (keeps_rig && !moves) rig.keep_first(number);
+  if (keeps_rig) body.rig = rig.take(*scene);
   if (body.mesh.faces.empty())
     throw InputError(shown_path(path) + ": 0 triangles, expected at least one");
   return body;

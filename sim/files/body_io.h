@@ -11,7 +11,7 @@ namespace icloth {
 
 struct Body {
   TriangleMesh mesh;       ///< bind pose, in the order of the file
-  Rig rig = {};            ///< what moves it; empty where the file holds no clips
+  Rig rig = {};            ///< what moves it; empty without bones and clips
   std::size_t bones = 0;   ///< bones that some vertex follows
   std::size_t morphs = 0;  ///< shapes that meshes can be blended with
 };
@@ -25,6 +25,10 @@ struct Body {
 /// file can take this program down (sim/files/body_process.h). The main function of a program that
 /// reads bodies calls serve_body_reader first; without it std::logic_error is thrown.
 Body read_body(const std::string& path);
+
+/// The motion of a BVH file: its joints as the nodes of a rig without vertices, and one clip. Read
+/// in such a child process as well. Throws InputError naming line, value and what was expected.
+Rig read_motion(const std::string& path);
 
 /// To be called first in main. In the child process of read_body it reads the body and returns the
 /// exit code of the program; otherwise it returns nothing and main goes on.

@@ -78,6 +78,7 @@ RigReader::RigReader(const aiScene& scene, std::string path, bool use_morph_weig
 /// meant.
 void RigReader::add_node(const aiNode& node, Index parent) {
   const auto number = static_cast<Index>(rig_.parent.size());
+  rig_.names.emplace_back(node.mName.C_Str());
   rig_.parent.push_back(parent);
   rig_.local.push_back(affine_of(node.mTransformation));
   number_.emplace(&node, number);
@@ -214,20 +215,21 @@ std::vector<Index> RigReader::merge() {
 
   // The vertices that stay keep their order.
   std::vector<Index> number(sorted.size());
+  Index next = 0;
+  for (std::size_t v = 0; v < number.size(); ++v)
+    number[v] = first_equal[v] == v ? next++ : number[first_equal[v]];
+  keep_first(number);
+  return number;
+}
+
+void RigReader::keep_first(const std::vector<Index>& number) {
   std::vector<std::size_t> kept;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (first_equal[v] == v) {
-      number[v] = static_cast<Index>(kept.size());
-      kept.push_back(v);
-    } else {
-      number[v] = number[first_equal[v]];
-    }
-  }
+  for (std::size_t v = 0; v < number.size(); ++v)
+    if (number[v] == static_cast<Index>(kept.size())) kept.push_back(v);
   keep_ranges(kept, rig_.weight_first, rig_.weight_bone, rig_.weight);
   keep_ranges(kept, rig_.morph_first, rig_.morph_target, rig_.morph_delta);
   for (std::size_t k = 0; k < kept.size(); ++k) rig_.rest[k] = rig_.rest[kept[k]];
   rig_.rest.resize(kept.size());
-  return number;
 }
 
 Rig RigReader::take(const aiScene& scene) {

@@ -32,6 +32,9 @@ class RigReader {
   /// Merges vertices at one place that move together: their numbers afterwards, in the order in
   /// which they were added.
   std::vector<Index> merge();
+  /// Keeps the first vertex of each number. `number`: of each vertex afterwards, ascending where
+  /// new; the others of a number are at the same place and follow the first.
+  void keep_first(const std::vector<Index>& number);
   /// Reads the clips of the scene and hands out the rig.
   Rig take(const aiScene& scene);
 

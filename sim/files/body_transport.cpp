@@ -1,8 +1,8 @@
 // An answer begins with the length of a JSON text [8 bytes] and the text: {"error": …} or {"bones",
-// "morphs", "clips": [{"name", "in_seconds"}]}. Then follow arrays, each as its number of elements
-// [8 bytes] and the elements as they are in memory: positions, faces, the arrays of the rig in the
-// order of sim/bodies/rig.h, and for each clip the nodes and targets of its channels and their
-// keys.
+// "morphs", "nodes": [name], "clips": [{"name", "in_seconds"}]}. Then follow arrays, each as its
+// number of elements [8 bytes] and the elements as they are in memory: positions, faces, the arrays
+// of the rig in the order of sim/bodies/rig.h, and for each clip the nodes and targets of its
+// channels and their keys.
 #include "sim/files/body_transport.h"
 
 #include <cmath>
@@ -73,8 +73,9 @@ void encode_clip(const Clip& clip, Encoder& to) {
   for (const MorphChannel& channel : clip.morphs) to.array(channel.weight);
 }
 
-constexpr double kLargestTime = 1e9;    // [s]
-constexpr double kLargestWeight = 1e3;  // of a morph target
+constexpr double kLargestTime = 1e9;        // [s]
+constexpr double kLargestWeight = 1e3;      // of a morph target
+constexpr std::size_t kLongestName = 4096;  // of a node [bytes]
 
 bool is_within(double x, double largest) { return std::abs(x) <= largest; }
 bool is_fine(const Affine& map) {
@@ -87,7 +88,8 @@ class Decoder {
  public:
   Decoder(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
 
-  Body decode() {
+  /// `has_mesh`: whether a mesh is expected, or none.
+  Body decode(bool has_mesh) {
     // The answer begins with its head, which holds an error or what is not an array.
     const std::uint64_t length = number();
     require(length <= rest_.size());
@@ -103,8 +105,11 @@ class Decoder {
     array(body.mesh.positions);
     array(body.mesh.faces);
     check(body.mesh);
+    require(body.mesh.faces.empty() != has_mesh);
+    require(body.mesh.faces.empty() != has_mesh);
     visit_arrays(body.rig, [&](auto& values) { array(values); });
     if (body.rig.empty()) {
+      require(body.rig.names.empty());
       require(body.rig.clips.empty() && body.rig.rest.empty());
     } else {
       check_nodes(body.rig);
@@ -114,6 +119,12 @@ class Decoder {
     for (Clip& clip : body.rig.clips) read_clip(body.rig, clip);
     require(rest_.empty());
     return body;
+  }
+
+  Rig decode_motion() {
+    Rig motion = decode(false).rig;
+    require(!motion.empty() && motion.clips.size() == 1 && motion.clips[0].in_seconds);
+    return motion;
   }
 
  private:
@@ -147,6 +158,10 @@ class Decoder {
     Body body;
     body.bones = static_cast<std::size_t>(object.required("bones").integer(0, most));
     body.morphs = static_cast<std::size_t>(object.required("morphs").integer(0, most));
+    for (const JsonValue& name : object.required("nodes").items()) {
+      body.rig.names.push_back(name.text());
+      require(body.rig.names.back().size() <= kLongestName);
+    }
     for (const JsonValue& item : object.required("clips").items()) {
       JsonObject clip(item);
       body.rig.clips.emplace_back();
@@ -160,7 +175,6 @@ class Decoder {
     for (const Vec3d& p : mesh.positions) require(is_coordinate(p));
     for (const Triangle& face : mesh.faces)
       for (const Index v : face) require_index(v, mesh.positions.size());
-    require(!mesh.faces.empty());
   }
 
   void require_index(Index i, std::size_t count) const {
@@ -169,7 +183,7 @@ class Decoder {
 
   /// Parents come before their children, so no node can be above itself.
   void check_nodes(const Rig& rig) const {
-    require(rig.local.size() == rig.parent.size());
+    require(rig.local.size() == rig.parent.size() && rig.names.size() == rig.parent.size());
     for (std::size_t n = 0; n < rig.parent.size(); ++n) {
       if (rig.parent[n] != kNone) require_index(rig.parent[n], n);
       require(is_fine(rig.local[n]));
@@ -269,8 +283,10 @@ std::string encode_error(const std::string& message) {
 }
 
 std::string encode_body(const Body& body) {
-  nlohmann::json head{
-      {"bones", body.bones}, {"morphs", body.morphs}, {"clips", nlohmann::json::array()}};
+  nlohmann::json head{{"bones", body.bones},
+                      {"morphs", body.morphs},
+                      {"nodes", body.rig.names},
+                      {"clips", nlohmann::json::array()}};
   for (const Clip& clip : body.rig.clips)
     head["clips"].push_back({{"name", clip.name}, {"in_seconds", clip.in_seconds}});
 
@@ -283,7 +299,13 @@ std::string encode_body(const Body& body) {
 }
 
 Body decode_body(std::string_view bytes, const std::string& path) {
-  return Decoder(bytes, path).decode();
+  return Decoder(bytes, path).decode(true);
+}
+
+std::string encode_motion(const Rig& motion) { return encode_body({.mesh = {}, .rig = motion}); }
+
+Rig decode_motion(std::string_view bytes, const std::string& path) {
+  return Decoder(bytes, path).decode_motion();
 }
 
 }  // namespace icloth

@@ -18,4 +18,8 @@ std::string encode_error(const std::string& message);
 /// file, for messages.
 Body decode_body(std::string_view bytes, const std::string& path);
 
+/// The same for the motion of a file: a rig without vertices that has one clip.
+std::string encode_motion(const Rig& motion);
+Rig decode_motion(std::string_view bytes, const std::string& path);
+
 }  // namespace icloth

@@ -39,6 +39,7 @@ struct FileSpace {
     const Vec3d q = scale * p;
     return z_up ? Vec3d{q.x, q.z, -q.y} : q;
   }
+  Vec3d up() const { return z_up ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0}; }
   Affine affine() const {
     const double s = scale;
     if (z_up) return {{s, 0, 0, 0, 0, 0, s, 0, 0, -s, 0, 0}};
@@ -105,7 +106,8 @@ Obstacle parse_obstacle(JsonValue value, const SceneFolder& folder, std::size_t 
   // Its motion may come from a clip, from a point cache, from keyframes, or from two of them.
   const double offset = object.number("offset", 0, {0, 0.1});
   const std::string file = is_file ? shown_path(mesh.text()) : "its mesh";
-  parse_poses(object, folder, {file, place.affine() * space.affine(), offset}, body, obstacle);
+  parse_poses(object, folder, {file, place.affine() * space.affine(), offset, space.up()}, body,
+              obstacle);
   if (object.has("motion")) obstacle.motion = parse_motion(object["motion"]);
   obstacle.mesh = std::move(body.mesh);
   if (offset > 0) offset_along_normals(obstacle.mesh.positions, obstacle.mesh.faces, offset);

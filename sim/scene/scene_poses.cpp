@@ -9,6 +9,7 @@
 #include "sim/files/file_io.h"
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
+#include "sim/scene/scene_motion.h"
 
 namespace icloth {
 namespace {
@@ -136,19 +137,17 @@ void use_frame_rate(Clip& clip, double frame_rate) {
   clip.duration /= frame_rate;
 }
 
-void parse_clip(JsonObject& object, std::string_view key, const SceneFolder& folder,
-                const PlacedBody& placed, Body& body, Obstacle& obstacle) {
-  // The rig keeps the clip that is played alone.
+/// Plays the only clip of a rig, which is from `file`.
+void play_clip(JsonObject& object, const SceneFolder& folder, const PlacedBody& placed,
+               const std::string& file, const std::shared_ptr<Rig>& rig, const Body& body,
+               Obstacle& obstacle) {
   const std::string name = "obstacle " + in_quotes(obstacle.name);
-  auto rig = std::make_shared<Rig>(std::move(body.rig));
-  const std::size_t number = find_clip(object[key], rig->clips, placed.file);
-  rig->clips = {std::move(rig->clips[number])};
   Clip& clip = rig->clips[0];
   const double frame_rate = object.number("frame_rate", kFrameRate, {1e-3, 1e5});
   if (!clip.in_seconds)
     use_frame_rate(clip, frame_rate);
   else if (object.has("frame_rate") && frame_rate != kFrameRate)
-    folder.note(name + ": \"frame_rate\" is not used: " + placed.file +
+    folder.note(name + ": \"frame_rate\" is not used: " + file +
                 " gives the times of its clips in seconds");
 
   if (placed.offset > 0) offset_rig(*rig, placed.place, body.mesh.faces, placed.offset);
@@ -158,6 +157,25 @@ void parse_clip(JsonObject& object, std::string_view key, const SceneFolder& fol
     note_jump(
         largest_distance(pose_at(rig, 0, placed.place), pose_at(rig, clip.duration, placed.place)),
         "the clip", name, folder);
+}
+
+void parse_clip(JsonObject& object, std::string_view key, const SceneFolder& folder,
+                const PlacedBody& placed, Body& body, Obstacle& obstacle) {
+  // The rig keeps the clip that is played alone.
+  auto rig = std::make_shared<Rig>(std::move(body.rig));
+  const std::size_t number = find_clip(object[key], rig->clips, placed.file);
+  rig->clips = {std::move(rig->clips[number])};
+  play_clip(object, folder, placed, placed.file, rig, body, obstacle);
+}
+
+/// A motion of another skeleton becomes the only clip of the body.
+void parse_motion_file(JsonObject& object, const SceneFolder& folder, const PlacedBody& placed,
+                       Body& body, Obstacle& obstacle) {
+  const std::string name = "obstacle " + in_quotes(obstacle.name);
+  Clip clip = clip_of_motion(object, folder, {name, placed.file, placed.up}, body.rig);
+  auto rig = std::make_shared<Rig>(std::move(body.rig));
+  rig->clips = {std::move(clip)};
+  play_clip(object, folder, placed, shown_path(object["animation"].text()), rig, body, obstacle);
 }
 
 void parse_point_cache(JsonObject& object, const SceneFolder& folder, const PlacedBody& placed,
@@ -203,8 +221,11 @@ void parse_poses(JsonObject& object, const SceneFolder& folder, const PlacedBody
   // An animation is a file of its own, or by its older name a clip.
   if (has_animation && is_point_cache(object["animation"].text()))
     return parse_point_cache(object, folder, placed, body.mesh, obstacle);
+  if (has_animation && lower_extension(object["animation"].text()) == ".bvh")
+    return parse_motion_file(object, folder, placed, body, obstacle);
   if (has_animation && body.rig.clips.empty())
-    object["animation"].refuse("a .pc2 or .mdd file, since " + placed.file + " holds no clips");
+    object["animation"].refuse("a .pc2, .mdd or .bvh file, since " + placed.file +
+                               " holds no clips");
   if (has_animation || has_clip)
     return parse_clip(object, has_clip ? "clip" : "animation", folder, placed, body, obstacle);
 

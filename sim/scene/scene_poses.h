@@ -11,10 +11,11 @@ struct PlacedBody {
   std::string file;  ///< for messages
   Affine place;      ///< from the space of the file to that of the scene
   double offset;     ///< of its skin [m]
+  Vec3d up;          ///< in the space of the file
 };
 
-/// Sets the poses of an obstacle from the keys "clip", "animation", "frame_rate", "start", "speed",
-/// "loop" and "blend_in". `body`: its mesh placed, its rig as in the file, which is taken.
+/// Sets the poses of an obstacle from the keys "clip", "animation", "bones", "frame_rate", "start",
+/// "speed", "loop" and "blend_in". `body`: its mesh placed, its rig as in the file, which is taken.
 void parse_poses(JsonObject& object, const SceneFolder& folder, const PlacedBody& placed,
                  Body& body, Obstacle& obstacle);
 

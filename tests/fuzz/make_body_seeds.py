@@ -24,7 +24,8 @@ def array(kind, numbers, per_element):
 
 
 def body(clips=(), rig=None, positions=TRIANGLE, keys=b""):
-    bytes_ = head({"bones": 0, "morphs": 0, "clips": list(clips)})
+    nodes = ["hip", "knee"] if rig else []
+    bytes_ = head({"bones": 0, "morphs": 0, "nodes": nodes, "clips": list(clips)})
     bytes_ += array("d", positions, 3) + array("i", [0, 1, 2], 3)
     return bytes_ + (rig or struct.pack("<12Q", *[0] * 12)) + keys
 
@@ -71,8 +72,9 @@ REGRESSIONS = {
     "bad_nan_weight": body([WALK], rig(weights=(1, NAN, 0.5, 1)), keys=clip()),
     "bad_missing_clip": body([WALK, WALK], rig(), keys=clip()),
     "bad_more_bytes": body() + b"more",
-    "bad_huge_count": head({"bones": 0, "morphs": 0, "clips": []}) + struct.pack("<Q", 1 << 61),
+    "bad_huge_count": head({"bones": 0, "morphs": 0, "nodes": [], "clips": []}) + struct.pack("<Q", 1 << 61),
     "bad_huge_head": struct.pack("<Q", (1 << 64) - 1) + b"{}",
+    "bad_missing_names": body(rig=rig()).replace(b'["hip","knee"]', b'["hip"]       '),
     "good_large_maps": body([WALK], rig(local=LARGE), keys=clip(move=(HUGE, HUGE, HUGE))),
 }
 

@@ -83,10 +83,11 @@ std::string scene_with(const TemporaryFolder& folder, const std::string& body,
   return folder.write("scene.json", scene.dump());
 }
 
-void expect_refused(const TemporaryFolder& folder, const std::string& body) {
-  const Outcome outcome = run(folder, scene_with(folder, body));
-  const std::string what = body + " (" + std::to_string(outcome.seconds) + " s, " +
-                           std::to_string(outcome.memory >> 10) + " MB): " + outcome.err;
+void expect_refused(const TemporaryFolder& folder, const std::string& body,
+                    const Json& keys = Json::object()) {
+  const Outcome outcome = run(folder, scene_with(folder, body, keys));
+  const std::string what = body + " " + keys.dump() + " (" + std::to_string(outcome.seconds) +
+                           " s, " + std::to_string(outcome.memory >> 10) + " MB): " + outcome.err;
   EXPECT_EQ(outcome.code, 2) << what;
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << what;
   EXPECT_TRUE(outcome.err.starts_with("icloth: ")) << what;
@@ -131,6 +132,22 @@ TEST(HostileBodies, BrokenTextsAreRefused) { expect_all_refused(add_texts, 25); 
 TEST(HostileBodies, BrokenBinariesAreRefused) { expect_all_refused(add_binaries, 40); }
 TEST(HostileBodies, BrokenArchivesAreRefused) { expect_all_refused(add_archives, 5); }
 TEST(HostileBodies, MisnamedEmptyAndCutFilesAreRefused) { expect_all_refused(add_misnamed, 25); }
+
+TEST(HostileBodies, BrokenMotionsAreRefused) {
+  const TemporaryFolder folder;
+  folder.write("good.glb", changed_glb({}));
+  std::vector<HostileFile> files;
+  add_motions(files);
+  EXPECT_GE(files.size(), 15u);
+  for (const HostileFile& file : files) {
+    folder.write(file.name, file.bytes);
+    expect_refused(folder, "good.glb", {{"animation", file.name}});
+  }
+  ASSERT_EQ(mkfifo(folder.path("pipe.bvh").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder.path("zero.bvh"));
+  for (const char* name : {"pipe.bvh", "zero.bvh", "none.bvh", "../good.bvh", "/dev/stdin.bvh"})
+    expect_refused(folder, "good.glb", {{"animation", name}});
+}
 
 /// The clip is played to its end and beyond, where all that a file can do has been done.
 TEST(HostileBodies, WhatIsReadWithoutItsBrokenPartsIsSimulated) {

@@ -74,6 +74,42 @@ inline void add_xml(std::vector<HostileFile>& files) {
   files.push_back({"binary.dae", "<COLLADA>" + noise(500, 1)});
 }
 
+/// A motion of three joints with one channel each.
+inline std::string motion_text(const std::string& root, const std::string& frames,
+                               const std::string& numbers) {
+  const std::string block = "{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n";
+  return "HIERARCHY\nROOT " + root + "\n" + block + "JOINT knee\n" + block + "JOINT tail\n" +
+         block + "}\n}\n}\nMOTION\nFrames: " + frames + "\nFrame Time: 0.1\n" + numbers;
+}
+
+/// Motions for a body with the nodes "hip" and "knee".
+inline void add_motions(std::vector<HostileFile>& files) {
+  const std::string zeros = "0 0 0\n";
+  const auto add = [&](const char* name, const std::string& text) {
+    files.push_back({std::string(name) + ".bvh", text});
+  };
+  add("two_partners", motion_text("hip", "1", zeros));
+  add("no_partner", motion_text("a", "1", zeros));
+  add("negative_frames", motion_text("hip", "-1", zeros));
+  add("many_frames", motion_text("hip", "4000000000", zeros));
+  add("large_frames", motion_text("hip", "1e300", zeros));
+  add("frames_without_numbers", motion_text("hip", "2", zeros));
+  add("more_numbers", motion_text("hip", "1", zeros + zeros));
+  add("nan", motion_text("hip", "1", "0 nan 0\n"));
+  add("far", motion_text("hip", "1", "0 1e300 0\n"));
+  add("words", motion_text("hip", "1", "a b c\n"));
+  add("no_joints", "HIERARCHY\nMOTION\nFrames: 1\nFrame Time: 0.1\n0\n");
+  add("no_channels", "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 1\n");
+  add("channels", "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 400000000 Xrotation\n}\n");
+  add("open", "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\n");
+  add("deep", "HIERARCHY\nROOT a\n{\n" + repeated("JOINT a\n{\n", 500000));
+  add("many_ends", "HIERARCHY\nROOT a\n{\n" + repeated("End Site\n{\n}\n", 500000));
+  add("long_name", "HIERARCHY\nROOT " + std::string(1000000, 'a') + "\n{\n");
+  add("empty", "");
+  add("zeros", std::string(1000000, '\0'));
+  add("noise", "HIERARCHY\n" + noise(4000, 11));
+}
+
 /// The head of a binary FBX file, and one node of it with nothing in it but these bytes.
 inline std::string binary_fbx(const std::string& nodes) {
   return std::string("Kaydara FBX Binary  \0\x1a\0", 23) + u32(7400) + nodes;
