@@ -46,6 +46,7 @@ RotationKey product(const RotationKey& a, const RotationKey& b) {
 Rig arm() {
   Rig rig;
   const auto moved = [](double x) { return Affine{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
+  rig.names = {"upper_arm", "forearm"};
   rig.parent = {kNone, 0};
   rig.local = {moved(0), moved(1)};
   rig.bone_node = {0, 1};
@@ -181,6 +182,7 @@ TEST(Skinning, AnOffsetSkinTurnsWithItsBones) {
 TEST(BodyTransport, BringsARigAsItWas) {
   const Body body = arm_body(), read = decode_body(encode_body(body), "a.glb");
   EXPECT_EQ(read.rig.rest, body.rig.rest);
+  EXPECT_EQ(read.rig.names, body.rig.names);
   EXPECT_EQ(read.rig.weight, body.rig.weight);
   EXPECT_EQ(read.rig.clips.at(0).name, "bend");
   EXPECT_EQ(read.rig.clips[0].duration, 1);
@@ -203,6 +205,9 @@ TEST(BodyTransport, RefusesAnswersThatMakeNoSense) {
       [](Body& b) { b.rig.bone_node[0] = -1; },
       [&](Body& b) { b.rig.inverse_bind[1].m[3] = nan; },
       [](Body& b) { b.rig.rest.pop_back(); },
+      [](Body& b) { b.rig.names.pop_back(); },
+      [](Body& b) { b.rig.names.emplace_back("hand"); },
+      [](Body& b) { b.rig.names[0] = std::string(5000, 'a'); },
       [](Body& b) { b.rig.morph_target = {0}; },
       [](Body& b) { b.rig.clips[0].channels[0].node = 2; },
       [&](Body& b) { b.rig.clips[0].channels[0].rotation[1].time = nan; },
