@@ -89,7 +89,7 @@ void print_report(const GarmentReport& report, std::size_t intersections, double
 
   if (report.dressing) {
     const DressingReport& worn = *report.dressing;
-    std::printf("dressing: %d steps without weight, %d with it, %d refused, %lld impacts\n",
+    std::printf("dressing: %d steps while seams close, %d to settle, %d refused, %lld impacts\n",
                 worn.closing_steps, worn.settling_steps, worn.refused_steps,
                 static_cast<long long>(worn.impacts));
     std::printf(
