@@ -153,9 +153,7 @@ StatisticsFile::StatisticsFile(std::string path, std::int64_t steps) : path_(std
   if (!json && file.extension() != ".csv")
     throw InputError("--stats " + shown_path(path_) +
                      ": expected a name that ends in .csv or .json");
-  if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
-    throw InputError("--stats " + shown_path(path_) + ": there is no folder " +
-                     in_quotes(file.parent_path().string()));
+  require_folder("--stats", path_);
 
   // JSON is written whole at the end, which would lose the steps before.
   const bool goes_on = steps > 0 && std::filesystem::exists(file);

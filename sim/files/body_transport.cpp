@@ -158,6 +158,8 @@ class Decoder {
     Body body;
     body.bones = static_cast<std::size_t>(object.required("bones").integer(0, most));
     body.morphs = static_cast<std::size_t>(object.required("morphs").integer(0, most));
+
+    // Names are for pairing nodes with the joints of a motion.
     for (const JsonValue& name : object.required("nodes").items()) {
       body.rig.names.push_back(name.text());
       require(body.rig.names.back().size() <= kLongestName);

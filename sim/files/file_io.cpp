@@ -44,20 +44,22 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   if (size > max_bytes)
     throw InputError(shown_path(path) + ": " + std::to_string(size) + " bytes, expected at most " +
                      std::to_string(max_bytes));
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) fail(path, "cannot be opened");
+  return read_head(path, size);
+}
 
-  // The file may have become shorter since its size was asked for.
-  std::string contents(size, '\0');
-  contents.resize(std::fread(contents.data(), 1, contents.size(), file.get()));
-  if (std::ferror(file.get())) fail(path, "cannot be read");
-  return contents;
+void require_folder(const std::string& option, const std::string& path) {
+  const std::filesystem::path file(path);
+  if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
+    throw InputError(option + " " + shown_path(path) + ": there is no folder " +
+                     in_quotes(file.parent_path().string()));
 }
 
 std::string read_head(const std::string& path, std::size_t bytes) {
   regular_file_size(path);
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(path, "cannot be opened");
+
+  // The file may be shorter, also than it was when its size was asked for.
   std::string contents(bytes, '\0');
   contents.resize(std::fread(contents.data(), 1, contents.size(), file.get()));
   if (std::ferror(file.get())) fail(path, "cannot be read");

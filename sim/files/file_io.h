@@ -18,6 +18,9 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes = std::ui
 /// The first bytes of a file, fewer where it is shorter. Throws InputError as read_file does.
 std::string read_head(const std::string& path, std::size_t bytes);
 
+/// Throws InputError where a file that `option` names would lie in a folder that there is not.
+void require_folder(const std::string& option, const std::string& path);
+
 /// Whether a path lies in a folder or below it, after all links of both have been followed; empty
 /// is the current folder. False where links go round, and for a path with a zero byte, at which the
 /// system would end it. Nothing is opened.

@@ -245,6 +245,8 @@ class Dressing {
       step(events, most, false);
       ++report_.closing_steps;
       if (k % kStepsBetweenLooks == 0) strain_ = gauge_.largest(simulator_->snapshot());
+
+      // The phase ends early where the seams are closed, or where nothing changes any more.
       if (strain_ < kClosedStrain && k >= least_steps_) break;
       if (k % kStallSteps == 0) {
         if (std::fabs(strain_ - before) <= kStallChange * before && k >= least_steps_) break;

@@ -9,6 +9,7 @@
 #include "app/common/headless.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
+#include "sim/files/file_io.h"
 #include "sim/files/frame_export.h"
 #include "sim/files/text.h"
 #include "sim/garment/open_scene.h"
@@ -17,20 +18,12 @@
 namespace icloth {
 namespace {
 
-/// Refuses a file in a folder that there is not.
-void check_folder(const std::string& option, const std::string& file) {
-  const std::filesystem::path path(file);
-  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
-    throw InputError(option + " " + shown_path(file) + ": there is no folder " +
-                     in_quotes(path.parent_path().string()));
-}
-
 /// Refuses outputs that cannot work before anything takes time.
 void check(const RunOptions& options) {
   if (!options.exports.empty() && options.out.empty())
     throw InputError("--export " + options.exports.front() + ": expected --out DIR with it");
-  check_folder("--record", options.record_file);
-  check_folder("--checkpoint", options.checkpoint_file);
+  require_folder("--record", options.record_file);
+  require_folder("--checkpoint", options.checkpoint_file);
 }
 
 /// The command that repeats a run up to a failed step.
@@ -172,9 +165,13 @@ int run_run(const RunOptions& options) {
 
   // Statistics and frames are written while the run goes.
   set_thread_count(options.simulation.threads);
-  RunFiles files(options, resumed ? resumed->steps() : 0);
+
+  // Those of a run that is resumed are touched only when its checkpoint was found to fit.
+  std::optional<RunFiles> files;
+  if (!resumed) files.emplace(options, 0);
   job.watch = [&](const Simulator& simulator, const StepReport* report, bool last) {
-    files.add(job, simulator, report, last);
+    if (!files) files.emplace(options, resumed->steps());
+    files->add(job, simulator, report, last);
   };
   profile_enable(options.profile);
   const HeadlessResult result = run_headless(job);
@@ -182,9 +179,9 @@ int run_run(const RunOptions& options) {
   if (result.start_refused) return result.start_exit_code;
 
   // The rest is written at its end.
-  files.finish(result.statistics);
+  files->finish(result.statistics);
   if (!options.record_file.empty()) save_recording(record, options.record_file);
-  print_end(options, job.build, files.steps(), result);
+  print_end(options, job.build, files->steps(), result);
   return result.clean() ? 0 : 1;
 }
 

@@ -191,7 +191,8 @@ int sew_panels(const SewOptions& options) {
   }
 
   // Where folds lie within each other and cannot be parted, the seams beside them stay open.
-  const std::size_t before = face_pairs(find_start_conflicts(scene, true)).size();
+  const std::size_t before =
+      options.report ? face_pairs(find_start_conflicts(scene, true)).size() : 0;
   Seam seam = joint_seam(proposal);
   const std::size_t proposed = seam.pairs.size();
   Welding sewn = weld_and_part(options, scene, seam);

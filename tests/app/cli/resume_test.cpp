@@ -168,6 +168,16 @@ TEST_F(Cli, ACheckpointThatDoesNotFitIsRefused) {
     expect_bad_input("run pulled.json" + resume + "cut", "");
   }
 
+  // A run that cannot be resumed leaves what is there as it is.
+  ASSERT_EQ(
+      icloth("run layers.json --device cpu --steps 30 --quiet --stats layers.csv --out out").code,
+      0);
+  const std::string rows = read(folder_ / "layers.csv"), list = read(folder_ / "out/frames.csv");
+  expect_bad_input("run layers.json" + resume + "state --stats layers.csv --out out",
+                   "another start state");
+  EXPECT_EQ(read(folder_ / "layers.csv"), rows);
+  EXPECT_EQ(read(folder_ / "out/frames.csv"), list);
+
   // Statistics of other steps are not written over.
   write("other.csv", "step,time\n1,0.1\n");
   expect_bad_input("run pulled.json" + resume + "state --stats other.csv", "other columns");
