@@ -6,7 +6,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 
 #include "app/common/element_names.h"
 #include "app/common/headless.h"
@@ -16,17 +15,14 @@
 #include "sim/files/mesh_io.h"
 #include "sim/files/text.h"
 #include "sim/scene/intersections.h"
-#include "sim/scene/repair.h"
+#include "sim/scene/panel_sewing.h"
 #include "sim/scene/scene_json.h"
 #include "sim/scene/seam_proposal.h"
-#include "sim/scene/seam_weld.h"
 
 namespace icloth {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kOpenRings = 4;  ///< rings of faces beside which seams stay open
 
 /// The scene file of the panels and the body, its files named as seen from `folder`.
 nlohmann::json scene_file(const SewOptions& options, const std::string& folder) {
@@ -119,54 +115,6 @@ void print_conflicts(const SewOptions& options, const Scene& scene,
   if (pairs.size() > kShown) std::fprintf(stderr, "  … and %zu more\n", pairs.size() - kShown);
 }
 
-/// A garment whose seams were welded.
-struct Welding {
-  Scene scene;
-  std::size_t pairs = 0;  ///< of faces that intersected when it was sewn
-  StartRepair repair;     ///< what parted them
-  std::vector<IntersectingFaces> left;
-};
-
-/// Makes one vertex of every pair, halfway between the two, and parts what then intersects.
-Welding weld_and_part(const SewOptions& options, Scene scene, const Seam& seam) {
-  scene.seams = {seam};
-  std::optional<WeldedScene> welded = weld_seam(scene, make_world(scene), 0);
-  if (!welded)
-    throw InputError(shown_path(options.pattern) +
-                     ": the seams leave faces without an area, expected a smaller --within");
-  Welding sewn{std::move(welded->scene), 0, {}, {}};
-  sewn.scene.seams.clear();
-  fit_thickness(sewn.scene);
-
-  sewn.pairs = face_pairs(find_start_conflicts(sewn.scene, true)).size();
-  sewn.repair = repair_start(sewn.scene, median_edge(sewn.scene));
-  sewn.left = face_pairs(find_start_conflicts(sewn.scene, true));
-  return sewn;
-}
-
-/// Takes the pairs out of a seam that lie within so many rings of faces that intersect. The numbers
-/// of faces are the same before and after the weld, and those of bodies come after them.
-void open_beside(const TriangleMesh& mesh, const std::vector<IntersectingFaces>& left, int reach,
-                 Seam& seam) {
-  std::vector<bool> near(mesh.positions.size());
-  for (const IntersectingFaces& pair : left)
-    for (const Index face : {pair.a, pair.b})
-      if (at(face) < mesh.faces.size())
-        for (const Index v : mesh.faces[at(face)]) near[at(v)] = true;
-
-  // Each ring grows over the faces, and over the seam, by one.
-  for (int ring = 0; ring < reach; ++ring) {
-    std::vector<bool> grown = near;
-    for (const Triangle& t : mesh.faces)
-      if (near[at(t[0])] || near[at(t[1])] || near[at(t[2])])
-        for (const Index v : t) grown[at(v)] = true;
-    for (const auto& [a, b] : seam.pairs)
-      if (near[at(a)] || near[at(b)]) grown[at(a)] = grown[at(b)] = true;
-    near = std::move(grown);
-  }
-  std::erase_if(seam.pairs, [&](const auto& p) { return near[at(p[0])] || near[at(p[1])]; });
-}
-
 }  // namespace
 
 int sew_panels(const SewOptions& options) {
@@ -190,25 +138,19 @@ int sew_panels(const SewOptions& options) {
     return 0;
   }
 
-  // Where folds lie within each other and cannot be parted, the seams beside them stay open.
+  // The welded garment replaces the panels.
   const std::size_t before =
       options.report ? face_pairs(find_start_conflicts(scene, true)).size() : 0;
-  Seam seam = joint_seam(proposal);
-  const std::size_t proposed = seam.pairs.size();
-  Welding sewn = weld_and_part(options, scene, seam);
-  for (int reach = 1; reach <= kOpenRings && !sewn.left.empty(); ++reach) {
-    open_beside(scene.cloths[0].mesh, sewn.left, reach, seam);
-    if (seam.pairs.empty()) break;
-    sewn = weld_and_part(options, scene, seam);
-  }
+  const Seam seam = joint_seam(proposal);
+  const SewnPanels sewn = sew_seam(scene, seam, shown_path(options.pattern));
   if (options.report) {
     std::printf(
         "%zu pairs of faces intersect as delivered, %zu when sewn, %zu after the repair, which "
         "moved %zu vertices by at most %.2f mm\n",
         before, sewn.pairs, sewn.left.size(), sewn.repair.moved, 1000 * sewn.repair.largest_move);
-    if (proposed > seam.pairs.size())
-      std::printf("%zu of %zu pairs stay open beside faces that could not be parted\n",
-                  proposed - seam.pairs.size(), proposed);
+    if (sewn.open > 0)
+      std::printf("%zu of %zu pairs stay open beside faces that could not be parted\n", sewn.open,
+                  seam.pairs.size());
   }
   if (!sewn.left.empty()) {
     print_conflicts(options, sewn.scene, sewn.left, proposal.panel);
