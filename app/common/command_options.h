@@ -47,8 +47,8 @@ inline void add_simulation_options(CLI::App& command, SimulationOptions& options
   // A command names a scene and a device.
   auto* scene = command.add_option(
       "SCENE", options.scene,
-      "built-in name (scarf dressed sphere twisting funnel drape flag), scene JSON or mesh "
-      "file");
+      "built-in name (scarf sphere twisting funnel dress tiered andy bishop dressed drape flag), "
+      "scene JSON or mesh file");
   if (scene_required) scene->required();
   add_device_option(command, options.device);
   command.add_option("--precision", options.precision, "f32 or f64 (f64: cpu only)")
