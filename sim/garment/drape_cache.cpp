@@ -20,7 +20,7 @@ namespace icloth {
 namespace {
 
 /// Grows when dressing gives other results for the same input.
-constexpr int kDressingVersion = 4;
+constexpr int kDressingVersion = 5;
 constexpr std::string_view kMagic = "icloth drape 1\n";
 constexpr const char* kExtension = ".drape";
 constexpr std::size_t kMostDrapes = 200;  // in the folder

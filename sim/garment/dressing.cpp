@@ -26,6 +26,7 @@ constexpr double kStallChange = 0.01;  // … the strain changed by no more than
 constexpr int kMostRefusals = 5;       // one after the other
 constexpr double kGrowTime = 1;        // of bodies that start contracted [s]
 constexpr double kHoldStiffness = 1;   // of a held vertex [N/m]
+constexpr double kRefinedTime = 0.1;   // to settle after the triangles were divided [s]
 
 /// Without weight, at first, and wind, stiffer in bending, and with the integrator that takes most
 /// energy away.
@@ -97,12 +98,13 @@ DressingRoom make_room(const Scene& scene, std::span<const std::size_t> on, std:
   return room;
 }
 
-/// Strains of the garment that is put on, without those of gathers.
+/// Strains of one garment, without those of gathers.
 class StrainGauge {
  public:
-  StrainGauge(const World& world, const DressingRoom& room, const Garment& garment)
-      : world_(world), first_face_(at(world.objects[room.garment].first_face)) {
-    const Cloth& cloth = room.scene->cloths[room.garment];
+  /// `number` is that of its cloth in the room.
+  StrainGauge(const World& world, const Scene& room, std::size_t number, const Garment& garment)
+      : world_(world), first_face_(at(world.objects[number].first_face)) {
+    const Cloth& cloth = room.cloths[number];
     gathered_ = gathered_faces(garment, cloth);
 
     std::vector<bool> sewn(cloth.mesh.positions.size());
@@ -122,9 +124,13 @@ class StrainGauge {
 
   double largest(const Snapshot& state) const { return percentile(strains(state, false), 1); }
 
-  double gathered_share() const {
-    return static_cast<double>(std::ranges::count(gathered_, true)) /
-           static_cast<double>(gathered_.size());
+  /// Writes what the strains are into the garment's report.
+  void measure(const Snapshot& state, DressingReport& report) const {
+    report.gathered_share = static_cast<double>(std::ranges::count(gathered_, true)) /
+                            static_cast<double>(gathered_.size());
+    report.strain_p95 = percentile(strains(state, false), 0.95);
+    report.largest_strain = largest(state);
+    report.seam_strain_p95 = percentile(strains(state, true), 0.95);
   }
 
  private:
@@ -202,7 +208,7 @@ class Dressing {
         least_steps_(contraction > 0 ? static_cast<int>(std::lround(kGrowTime / kTimeStep)) + 1
                                      : 0),
         world_(make_world(*room_.scene)),
-        gauge_(world_, room_, garment_),
+        gauge_(world_, *room_.scene, room_.garment, garment_),
         holds_(world_, room_, garment_),
         gravity_(scene.parameters.gravity),
         bend_scale_(scene.parameters.material.bend_scale),
@@ -213,13 +219,25 @@ class Dressing {
 
   DressingReport run() {
     close();
-    settle();
-    const Snapshot end = simulator_->snapshot();
-    report_.gathered_share = gauge_.gathered_share();
-    report_.strain_p95 = percentile(gauge_.strains(end, false), 0.95);
-    report_.largest_strain = gauge_.largest(end);
-    report_.seam_strain_p95 = percentile(gauge_.strains(end, true), 0.95);
+    settle(holds_.events(InputEvent::Kind::release, *simulator_), garment_.plan.settling);
+    gauge_.measure(simulator_->snapshot(), report_);
     return report_;
+  }
+
+  /// Lets all garments of the room settle, which were refined where they hang. Adds the steps and
+  /// the strains to their reports, of which `on` tells the order.
+  void run_refined(const Scene& scene, std::span<const std::size_t> on,
+                   std::span<DressingReport* const> reports) {
+    settle({}, kRefinedTime);
+    const Snapshot end = simulator_->snapshot();
+    for (std::size_t k = 0; k < on.size(); ++k) {
+      const Garment& garment = scene.garments[on[k]];
+      const auto number = std::ranges::find(room_.cloths, at(garment.cloth)) - room_.cloths.begin();
+      const StrainGauge gauge(world_, *room_.scene, static_cast<std::size_t>(number), garment);
+      gauge.measure(end, *reports[k]);
+      reports[k]->refined_steps += report_.settling_steps;
+      reports[k]->refused_steps += report_.refused_steps;
+    }
   }
 
   /// Writes where the garments are now into the scene; the next step starts at rest.
@@ -256,11 +274,10 @@ class Dressing {
     }
   }
 
-  /// Weight comes on, and the holds go.
-  void settle() {
+  /// The whole weight comes on; the events of its first step let go of what is held.
+  void settle(std::vector<InputEvent> events, double seconds) {
     set_weight(1, 1);
-    const int most = static_cast<int>(std::lround(garment_.plan.settling / kTimeStep));
-    std::vector<InputEvent> events = holds_.events(InputEvent::Kind::release, *simulator_);
+    const int most = static_cast<int>(std::lround(seconds / kTimeStep));
     for (int k = 1; k <= most; ++k) {
       step(events, most, true);
       ++report_.settling_steps;
@@ -330,6 +347,13 @@ DressingReport dress_garment(Scene& scene, std::size_t garment, std::span<const 
   DressingReport report = dressing.run();
   dressing.write(scene);
   return report;
+}
+
+void settle_refined(Scene& scene, std::span<const std::size_t> on,
+                    std::span<DressingReport* const> reports, const DressingWatch& watch) {
+  Dressing dressing(scene, on.first(on.size() - 1), on.back(), 0, watch);
+  dressing.run_refined(scene, on, reports);
+  dressing.write(scene);
 }
 
 }  // namespace icloth

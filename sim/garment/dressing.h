@@ -18,6 +18,7 @@ struct DressingReport {
   std::string garment;         ///< name of its cloth
   int closing_steps = 0;       ///< without their weight, or with a part of it
   int settling_steps = 0;      ///< with all of it
+  int refined_steps = 0;       ///< after its triangles were divided
   int refused_steps = 0;       ///< steps that were taken back; the garment went on from rest
   std::int64_t impacts = 0;    ///< that collision handling resolved
   double gathered_share = 0;   ///< of the faces, left out of the strains below
@@ -50,5 +51,10 @@ std::vector<std::size_t> dressing_order(const Scene& scene);
 /// put on.
 DressingReport dress_garment(Scene& scene, std::size_t garment, std::span<const std::size_t> on,
                              double contraction, const DressingWatch& watch = {});
+
+/// Lets the garments `on`, which were refined where they hang, settle together. Their reports, in
+/// the same order, get the strains that they have then.
+void settle_refined(Scene& scene, std::span<const std::size_t> on,
+                    std::span<DressingReport* const> reports, const DressingWatch& watch = {});
 
 }  // namespace icloth

@@ -5,6 +5,7 @@
 #include "kernels/index.h"
 #include "sim/files/text.h"
 #include "sim/garment/drape_cache.h"
+#include "sim/garment/refine.h"
 #include "sim/scene/repair.h"
 
 namespace icloth {
@@ -34,12 +35,10 @@ void note_arrangement(const std::string& cloth, const Arrangement& arrangement,
                     " intersect at the start");
 }
 
-}  // namespace
-
-std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string>& notes,
-                                           const DressingWatch& watch) {
+/// Puts the garments on in the triangles that they have. Those that are on are appended to `on`.
+std::vector<GarmentReport> put_on(Scene& scene, std::vector<std::size_t>& on,
+                                  std::vector<std::string>& notes, const DressingWatch& watch) {
   std::vector<GarmentReport> reports;
-  std::vector<std::size_t> on;
   for (std::size_t g : dressing_order(scene)) {
     const std::string& name = scene.cloths[at(scene.garments[g].cloth)].name;
     GarmentReport& report = reports.emplace_back();
@@ -52,6 +51,37 @@ std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string
       report.dressing = dress_garment(scene, g, on, report.arrangement.contraction, watch);
     on.push_back(g);
   }
+  return reports;
+}
+
+/// The reports of the garments that were dressed, if that is all of them; otherwise none.
+std::vector<DressingReport*> dressed(std::vector<GarmentReport>& reports, std::size_t garments) {
+  std::vector<DressingReport*> found;
+  for (GarmentReport& report : reports)
+    if (report.dressing) found.push_back(&*report.dressing);
+  if (found.size() < garments) found.clear();
+  return found;
+}
+
+}  // namespace
+
+std::vector<GarmentReport> put_garments_on(Scene& scene, std::vector<std::string>& notes,
+                                           const DressingWatch& watch) {
+  const int levels = refinements(scene);
+  std::vector<std::size_t> on;
+  if (levels == 0) return put_on(scene, on, notes, watch);
+
+  // The time goes into the seams that draw together, which few triangles do as well. Those of all
+  // garments are divided at once, so that layers which lie on one another stay free.
+  Scene worn = coarsest_scene(scene);
+  std::vector<GarmentReport> reports = put_on(worn, on, notes, watch);
+  const std::vector<DressingReport*> settling = dressed(reports, scene.garments.size());
+  for (int level = 0; level < levels; ++level) {
+    refine_garments(worn, level);
+    if (!settling.empty()) settle_refined(worn, on, settling, watch);
+  }
+  scene.cloths = std::move(worn.cloths);
+  scene.garments = std::move(worn.garments);
   return reports;
 }
 

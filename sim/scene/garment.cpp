@@ -3,16 +3,52 @@
 #include <algorithm>
 
 #include "kernels/index.h"
+#include "sim/pattern/divide_pattern.h"
 #include "sim/scene/scene.h"
 #include "sim/scene/transforms.h"
 
 namespace icloth {
 
+namespace {
+
+std::shared_ptr<const MeshedPattern> mesh_with(const Pattern& pattern, Index triangles) {
+  return std::make_shared<const MeshedPattern>(
+      mesh_pattern(pattern, edge_length_for(pattern, triangles)));
+}
+
+/// Meshes the pattern coarse and divides it until it has about so many triangles. Does nothing and
+/// returns false where the divided pattern would not be sewn as the coarse one is.
+bool mesh_in_levels(const Pattern& pattern, Index triangles, Garment& garment) {
+  if (triangles > kMostPatternTriangles) return false;  // meshing it as a whole says why
+  Index coarsest = triangles;
+  int levels = 0;
+  for (; coarsest > kMostDressedTriangles; coarsest /= 4) ++levels;
+  std::shared_ptr<const MeshedPattern> meshed = mesh_with(pattern, coarsest);
+
+  const std::vector<PanelPlacement> placements = placements_of(pattern);
+  SewnGarment sewn = sew_panels(*meshed, placements);
+  std::vector<PatternDivision> divisions;
+  for (int level = 0; level < levels; ++level) {
+    DividedPattern divided = divide_pattern(*meshed);
+    SewnGarment finer = sew_panels(divided.meshed, placements);
+    if (!is_sewn_alike(sewn, finer)) return false;
+    auto fine = std::make_shared<const MeshedPattern>(std::move(divided.meshed));
+    divisions.push_back({std::move(meshed), fine, std::move(divided.parents)});
+    meshed = std::move(fine);
+    sewn = std::move(finer);
+  }
+
+  garment.meshed = std::move(meshed);
+  garment.divisions = std::move(divisions);
+  return true;
+}
+
+}  // namespace
+
 Garment read_garment(const std::string& path, Index triangles, std::vector<std::string>& notes) {
   const Pattern pattern = read_pattern(path);
   Garment garment;
-  garment.meshed = std::make_shared<const MeshedPattern>(
-      mesh_pattern(pattern, edge_length_for(pattern, triangles)));
+  if (!mesh_in_levels(pattern, triangles, garment)) garment.meshed = mesh_with(pattern, triangles);
   garment.placements = placements_of(pattern);
   notes.insert(notes.end(), pattern.notes.begin(), pattern.notes.end());
   notes.insert(notes.end(), garment.meshed->notes.begin(), garment.meshed->notes.end());

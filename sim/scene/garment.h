@@ -1,6 +1,7 @@
 // A cloth that is sewn from a pattern: what is known of it beyond its mesh.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,14 @@ struct DressPlan {
   std::vector<std::string> hold;
 };
 
+/// A step from a pattern in few triangles to one in four times as many.
+struct PatternDivision {
+  std::shared_ptr<const MeshedPattern> coarse, fine;
+  /// For each point of each panel of the fine pattern the two points of the coarse one that it lies
+  /// in the middle of (panels).
+  std::vector<std::vector<std::array<Index, 2>>> parents;
+};
+
 struct Garment {
   Index cloth = 0;   ///< index in scene.cloths
   std::string body;  ///< obstacle that it is worn on; empty: whatever is there
@@ -26,14 +35,20 @@ struct Garment {
   Vec3d rotation;     ///< of all panels together, axis × angle [rad]
   Vec3d translation;  ///< after the rotation [m]
   std::shared_ptr<const MeshedPattern> meshed;
+  std::vector<PatternDivision> divisions;  ///< from the coarsest on; none where triangles are few
   std::vector<PanelPlacement> placements;  ///< of its panels, as they are tried last
   SewnGarment sewn;                        ///< with those; its mesh is that of the cloth
 };
 
 struct Cloth;
 
+/// A garment of more triangles is put on in about a quarter of them, or a quarter of that, and
+/// refined where it hangs.
+inline constexpr Index kMostDressedTriangles = 12000;
+
 /// Reads a pattern and meshes it with about so many triangles; its placements are the pattern's
-/// own. Appends a line to `notes` for what users should know. Throws InputError.
+/// own. A mesh of many triangles is a coarser one with its triangles divided. Appends a line to
+/// `notes` for what users should know. Throws InputError.
 Garment read_garment(const std::string& path, Index triangles, std::vector<std::string>& notes);
 
 /// Sews the garment with its placements, and makes the result the start and the rest shape of the

@@ -15,6 +15,7 @@
 #include "sim/garment/drape_cache.h"
 #include "sim/garment/face_strain.h"
 #include "sim/garment/open_scene.h"
+#include "sim/garment/refine.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/material_io.h"
 #include "sim/scene/shapes.h"
@@ -42,7 +43,8 @@ std::string tube_pattern(double width, double distance) {
 }
 
 /// A tube of cloth round a post of 10 cm radius.
-Scene tube_scene(const TemporaryFolder& folder, double width, double distance) {
+Scene tube_scene(const TemporaryFolder& folder, double width, double distance,
+                 Index triangles = 600) {
   std::vector<std::string> notes;
   Scene scene;
   scene.name = "tube";
@@ -50,7 +52,7 @@ Scene tube_scene(const TemporaryFolder& folder, double width, double distance) {
   cloth.name = "tube";
   cloth.material = load_material("default", "");
   Garment garment = read_garment(
-      folder.write("tube_specification.json", tube_pattern(width, distance)), 600, notes);
+      folder.write("tube_specification.json", tube_pattern(width, distance)), triangles, notes);
   sew_garment(garment, cloth);
   scene.cloths.push_back(std::move(cloth));
   scene.garments.push_back(std::move(garment));
@@ -279,6 +281,69 @@ TEST(Dressing, PutsInnerLayersOnFirst) {
   EXPECT_EQ(reports[1].garment, "tube");
   EXPECT_TRUE(reports[1].dressing);
   EXPECT_EQ(count_conflicts(scene), 0u);
+}
+
+/// More triangles than a garment is put on with.
+constexpr Index kManyTriangles = kMostDressedTriangles + 1000;
+
+TEST(Dressing, RefinesAGarmentOfManyTrianglesWhereItHangs) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15, kManyTriangles);
+  const std::size_t faces = scene.cloths[0].mesh.faces.size();
+  EXPECT_NEAR(static_cast<double>(faces), kManyTriangles, 0.1 * kManyTriangles);
+  ASSERT_EQ(refinements(scene), 1);
+
+  // The seams draw together in a quarter of the triangles; all of them settle.
+  std::vector<std::string> notes;
+  std::size_t closing = 0, settling = 0;
+  const auto reports =
+      put_garments_on(scene, notes, [&](const Simulator& room, const DressingStatus& status) {
+        (status.settling ? settling : closing) = room.scene().cloths[0].mesh.faces.size();
+        return true;
+      });
+  EXPECT_EQ(closing, faces / 4);
+  EXPECT_EQ(settling, faces);
+  EXPECT_EQ(scene.cloths[0].mesh.faces.size(), faces);
+  EXPECT_EQ(count_conflicts(scene), 0u);
+
+  ASSERT_TRUE(reports.at(0).dressing);
+  EXPECT_EQ(reports[0].dressing->refined_steps, 20);
+  EXPECT_LT(reports[0].dressing->largest_strain, 0.1);
+}
+
+TEST(Refine, CutsTheTrianglesThatHangOnTheBodyIntoFour) {
+  // The sewn mesh, bent in some way, is divided as any mesh is.
+  const TemporaryFolder folder;
+  const Scene scene = tube_scene(folder, 36, 15, kManyTriangles);
+  Scene worn = coarsest_scene(scene);
+  for (Vec3d& p : worn.cloths[0].mesh.positions) p.z += 0.3 * p.x * p.y;
+  TriangleMesh expected = worn.cloths[0].mesh;
+  std::vector<Vec3d> no_rest;
+  subdivide(expected, no_rest);
+  refine_garments(worn, 0);
+
+  // Vertices have other numbers, so corners are compared face by face, with the rest shape.
+  const TriangleMesh& mesh = worn.cloths[0].mesh;
+  ASSERT_EQ(mesh.faces.size(), expected.faces.size());
+  ASSERT_EQ(mesh.positions.size(), expected.positions.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(mesh.positions[at(mesh.faces[f][k])], expected.positions[at(expected.faces[f][k])]);
+      EXPECT_NEAR(mesh.uv[f][k].x, expected.uv[f][k].x, 1e-12);
+      EXPECT_NEAR(mesh.uv[f][k].y, expected.uv[f][k].y, 1e-12);
+    }
+
+  // It is the mesh of the loaded scene.
+  EXPECT_EQ(mesh.faces, scene.cloths[0].mesh.faces);
+  EXPECT_EQ(worn.garments[0].sewn.merged, scene.garments[0].sewn.merged);
+}
+
+TEST(Refine, LeavesScenesAloneThatHoldVerticesByTheirNumbers) {
+  const TemporaryFolder folder;
+  Scene scene = tube_scene(folder, 36, 15, kManyTriangles);
+  scene.cloths[0].pins = {0};
+  EXPECT_EQ(refinements(scene), 0);
+  EXPECT_EQ(refinements(tube_scene(folder, 36, 15)), 0);
 }
 
 TEST(Dressing, RaisesAPatternWhoseOriginIsAtTheWaist) {
