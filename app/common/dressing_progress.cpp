@@ -1,6 +1,6 @@
 #include "app/common/dressing_progress.h"
 
-#include <memory>
+#include <chrono>
 
 #include "app/common/progress.h"
 #include "sim/files/text.h"
@@ -18,6 +18,28 @@ DressingWatch show_dressing(bool quiet) {
     (*line)->update(status.step);
     return true;
   };
+}
+
+std::shared_ptr<const Scene> open_scene_showing(const std::string& argument,
+                                                std::span<const std::string> overrides,
+                                                SceneOrigin& origin, bool quiet,
+                                                const SceneLimits& limits) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  int steps = 0;
+  const auto watch = [&, show = show_dressing(quiet)](const Simulator& simulator,
+                                                      const DressingStatus& status) {
+    ++steps;
+    return show(simulator, status);
+  };
+  std::shared_ptr<const Scene> scene = open_scene(argument, overrides, &origin, watch, limits);
+
+  const std::chrono::duration<double> time = Clock::now() - begin;
+  if (steps > 0)
+    origin.notes.push_back("the garments were put on in " + std::to_string(steps) + " steps and " +
+                           rounded_text(time.count()) +
+                           " s, before the steps that the statistics count");
+  return scene;
 }
 
 }  // namespace icloth

@@ -17,7 +17,6 @@
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/files/text.h"
-#include "sim/garment/open_scene.h"
 #include "sim/scene/intersections.h"
 #include "sim/scene/scene_meshes.h"
 
@@ -154,8 +153,8 @@ int run_render(const RenderOptions& options) {
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
-  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin,
-                         show_dressing(common.quiet), scene_limits(common));
+  job.scene = open_scene_showing(common.scene, scene_overrides(common), job.origin, common.quiet,
+                                 scene_limits(common));
   const World world = make_world(*job.scene);
   const Camera camera =
       choose_camera(options, *job.scene, world, static_cast<double>(size.width) / size.height);

@@ -6,7 +6,6 @@
 #include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
-#include "sim/garment/open_scene.h"
 
 namespace icloth {
 
@@ -16,8 +15,8 @@ int run_replay(const ReplayOptions& options) {
   HeadlessJob job;
   SceneLimits limits;
   limits.allow_outside = options.allow_outside;
-  job.scene = open_scene(recording.scene, recording.overrides, &job.origin,
-                         show_dressing(options.quiet), limits);
+  job.scene =
+      open_scene_showing(recording.scene, recording.overrides, job.origin, options.quiet, limits);
   check_recording(recording, *job.scene, options.recording);
 
   for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})

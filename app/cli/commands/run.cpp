@@ -12,7 +12,6 @@
 #include "sim/files/file_io.h"
 #include "sim/files/frame_export.h"
 #include "sim/files/text.h"
-#include "sim/garment/open_scene.h"
 #include "sim/scene/scene_meshes.h"
 
 namespace icloth {
@@ -57,8 +56,8 @@ void print_profile(const RunStatistics& statistics) {
 HeadlessJob make_job(const RunOptions& options, Recording& input) {
   const SimulationOptions& common = options.simulation;
   HeadlessJob job;
-  job.scene = open_scene(common.scene, scene_overrides(common), &job.origin,
-                         show_dressing(common.quiet), scene_limits(common));
+  job.scene = open_scene_showing(common.scene, scene_overrides(common), job.origin, common.quiet,
+                                 scene_limits(common));
   if (!options.input_file.empty()) {
     input = load_recording(options.input_file);
     check_recording(input, *job.scene, options.input_file);

@@ -92,6 +92,9 @@ void print_report(const GarmentReport& report, std::size_t intersections, double
     std::printf("dressing: %d steps while seams close, %d to settle, %d refused, %lld impacts\n",
                 worn.closing_steps, worn.settling_steps, worn.refused_steps,
                 static_cast<long long>(worn.impacts));
+    if (worn.refined_steps > 0)
+      std::printf("refined: %d steps to settle after the triangles were divided\n",
+                  worn.refined_steps);
     std::printf(
         "strain: 95 %% of the faces below %.3f, largest %.3f; at seams 95 %% below %.3f; "
         "gathers, %.1f %% of the faces, left out\n",
