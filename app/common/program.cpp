@@ -1,6 +1,7 @@
 #include "app/common/program.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -31,6 +32,8 @@ std::string first_line(const std::string& text) {
 }
 
 int run_program(const std::function<int()>& work) {
+  // A file that may not grow is reported as a full disk is, and does not end the program at once.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int code = work();
     check_output();
