@@ -337,7 +337,7 @@ void write_ply(const std::string& path, std::span<const NamedMesh> objects,
   if (!comment.empty()) head << "comment " << comment << "\n";
   std::size_t vertices = 0, faces = 0;
   for (const NamedMesh& object : objects) {
-    head << "comment object " << one_line(object.name) << " " << vertices << " "
+    head << "comment object " << file_line(object.name) << " " << vertices << " "
          << object.positions.size() << " " << faces << " " << object.faces.size() << "\n";
     vertices += object.positions.size();
     faces += object.faces.size();

@@ -114,6 +114,12 @@ std::string excerpt(std::string_view input) {
   return text.substr(0, offset_of(text, kHead)) + "…" + end.substr(offset_of(end, skipped));
 }
 
+std::string file_line(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '_');
+  return name;
+}
+
 std::string in_quotes(std::string_view input) {
   std::string text(1, '\'');
   text += excerpt(input);

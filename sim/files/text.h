@@ -17,6 +17,9 @@ std::string harmless(std::string_view text);
 /// kMostQuoted characters. Every message that repeats keys, values or words of a file uses it.
 std::string excerpt(std::string_view input);
 
+/// A name of any characters as a line of a file can hold it: with `_` for control characters.
+std::string file_line(std::string name);
+
 /// The excerpt in single quotes.
 std::string in_quotes(std::string_view input);
 

@@ -22,6 +22,12 @@ TEST(Text, ShortInputIsRepeatedAsItIs) {
   EXPECT_EQ(excerpt(std::string(80, 'x')), std::string(80, 'x'));
 }
 
+TEST(Text, ANameStaysOnItsLineOfAFile) {
+  EXPECT_EQ(file_line("a b,c"), "a b,c");
+  EXPECT_EQ(file_line("a\nv 0 0 0\x7f"), "a_v 0 0 0_");
+  EXPECT_EQ(file_line(std::string(500, 'x')), std::string(500, 'x'));
+}
+
 TEST(Text, LongInputLosesItsMiddle) {
   for (const std::size_t length : {81u, 200u, 641u, 5000u, 1u << 20}) {
     const std::string text = "begin" + std::string(length - 8, 'x') + "end";
