@@ -9,6 +9,7 @@
 #include "app/cli/commands/ccd.h"
 #include "app/cli/commands/check.h"
 #include "app/cli/commands/detect.h"
+#include "app/cli/commands/export.h"
 #include "app/cli/commands/info.h"
 #include "app/cli/commands/pattern.h"
 #include "app/cli/commands/render.h"
@@ -17,6 +18,7 @@
 #include "app/cli/commands/sew.h"
 #include "app/cli/commands/view.h"
 #include "app/common/command_options.h"
+#include "app/common/frame_formats.h"
 #include "app/common/machine.h"
 #include "app/common/program.h"
 #include "app/window/bindings.h"
@@ -28,8 +30,8 @@
 namespace icloth {
 namespace {
 
-constexpr std::string_view kCommands[] = {"view",   "run",   "render",  "bench", "replay", "ccd",
-                                          "detect", "check", "pattern", "sew",   "info"};
+constexpr std::string_view kCommands[] = {"view", "run",    "render", "export",  "bench", "replay",
+                                          "ccd",  "detect", "check",  "pattern", "sew",   "info"};
 
 int print_keys() {
   std::fputs(bindings_markdown().c_str(), stdout);
@@ -45,6 +47,7 @@ struct Commands {
   ViewOptions view;
   RunOptions run;
   RenderOptions render;
+  ExportOptions exported;
   ReplayOptions replay;
   CheckOptions check;
   DetectOptions detect;
@@ -59,6 +62,7 @@ struct Commands {
   void add_view();
   void add_run();
   void add_render();
+  void add_export();
   void add_bench();
   void add_replay();
   void add_ccd();
@@ -120,8 +124,7 @@ void Commands::add_run() {
   command
       ->add_option("--export", run.exports,
                    "format of the frames: obj, ply, pc2, mdd or usda; repeatable")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(std::begin(kFrameFormats), std::end(kFrameFormats))))
+      ->check(CLI::IsMember(kFrameFormats))
       ->allow_extra_args(false);
   command->add_option("--every", run.every, "export each K-th step")
       ->check(CLI::Range(1L, 1000000L));
@@ -170,6 +173,20 @@ void Commands::add_render() {
       ->check(CLI::IsMember({"auto", "interop", "host"}))
       ->capture_default_str();
   command->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
+}
+
+void Commands::add_export() {
+  CLI::App* command =
+      add_command("export", "formats of a run that was cut off, from its point caches",
+                  [this] { return run_export(exported); });
+  command->add_option("SPOOL", exported.spools, "folders of runs that export pc2, mdd or usda")
+      ->required();
+  command
+      ->add_option("--format", exported.formats,
+                   "obj, ply, pc2, mdd or usda; repeatable; default: mdd and usda")
+      ->check(CLI::IsMember(kFrameFormats))
+      ->allow_extra_args(false);
+  command->add_option("--out", exported.out, "folder of the results; default: that of the spool");
 }
 
 void Commands::add_replay() {
@@ -268,6 +285,7 @@ Commands::Commands() {
   add_view();
   add_run();
   add_render();
+  add_export();
   add_bench();
   add_replay();
   add_ccd();

@@ -11,6 +11,7 @@
 #include "sim/files/cache_frames.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
+#include "sim/files/spool.h"
 #include "sim/files/text.h"
 
 namespace icloth {
@@ -97,16 +98,16 @@ void CacheExport::begin(std::span<const NamedMesh> meshes, std::int64_t kept) {
     if (kept > 0) {
       keep_frames(path, cache.vertices, kept);
     } else {
-      write_obj(name + ".obj", std::span(&mesh, 1), "faces of the point cache");
+      write_obj(name + ".obj", std::span(&mesh, 1), "faces of the point cache", ObjUv::written);
       write_file(path, pc2_head(cache.vertices));
     }
     caches_.push_back(cache);
   }
   frames_ = kept;
+  if (kept == 0) write_object_list(folder_, caches_);
 }
 
-void CacheExport::append(std::span<const NamedMesh> meshes, std::int64_t kept) {
-  if (caches_.empty()) begin(meshes, kept);
+void CacheExport::append(std::span<const NamedMesh> meshes) {
   if (frames_ >= std::numeric_limits<std::int32_t>::max())
     refuse(folder_, "too many frames for a point cache");
 
@@ -118,15 +119,17 @@ void CacheExport::append(std::span<const NamedMesh> meshes, std::int64_t kept) {
   for (const CachedMesh& cache : caches_) set_frames(cache.cache, frames_);
 }
 
-void CacheExport::write_mdd(std::span<const double> times) const {
-  for (const CachedMesh& cache : caches_) {
+void write_mdd(const std::string& folder, std::span<const CachedMesh> caches,
+               std::span<const double> times) {
+  for (const CachedMesh& cache : caches) {
     // The head has the time of every frame, which is why this file cannot grow.
     std::string bytes;
     append_big_endian(bytes, static_cast<std::uint32_t>(times.size()));
     append_big_endian(bytes, static_cast<std::uint32_t>(cache.vertices));
     for (const double time : times)
       append_big_endian(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(time)));
-    OutputFile file(std::filesystem::path(cache.cache).replace_extension(".mdd").string());
+    const std::string name = std::filesystem::path(cache.cache).stem().string();
+    OutputFile file(folder + "/" + name + ".mdd");
     file.write(bytes);
 
     // Frames are turned one after the other, so that a long run takes no more memory.
@@ -142,8 +145,9 @@ void CacheExport::write_mdd(std::span<const double> times) const {
   }
 }
 
-void CacheExport::write_usda(std::span<const double> times) const {
-  icloth::write_usda(folder_ + "/scene.usda", caches_, times);
+void write_usda_scene(const std::string& folder, std::span<const CachedMesh> caches,
+                      std::span<const double> times) {
+  write_usda(folder + "/scene.usda", caches, times);
 }
 
 }  // namespace icloth

@@ -39,6 +39,10 @@ class FrameExport {
   static constexpr FrameFormat kObj[] = {FrameFormat::obj};
 
   bool has(FrameFormat format) const;
+  bool has_caches() const {
+    return has(FrameFormat::pc2) || has(FrameFormat::mdd) || has(FrameFormat::usda);
+  }
+  void begin(std::span<const NamedMesh> meshes);
   void write_frame(std::span<const NamedMesh> meshes, std::int64_t step, double time,
                    const std::string& comment);
   void keep_frames(std::int64_t steps);
@@ -47,8 +51,9 @@ class FrameExport {
   std::int64_t every_;
   std::vector<FrameFormat> formats_;
   CacheExport caches_;
+  bool begun_ = false;
   std::int64_t last_step_ = -1;  ///< of the frame written last; −1: none yet
-  long frames_ = 0;
+  std::size_t frames_ = 0;
   std::vector<double> even_times_;  ///< of the frames in caches [s]
   std::int64_t kept_ = 0;           ///< of them, those that were there before
 };

@@ -1,8 +1,11 @@
 #include "sim/files/mesh_io.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cstdio>
+#include <initializer_list>
 #include <map>
 
 #include "sim/files/error.h"
@@ -25,6 +28,38 @@ void append_index(std::string& text, std::size_t value) {
   char digits[24];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
+
+/// A statement of so many numbers.
+void append_row(std::string& text, const char* key, std::initializer_list<float> numbers) {
+  text += key;
+  for (const float number : numbers) {
+    text += ' ';
+    append_number(text, number);
+  }
+  text += '\n';
+}
+
+/// The numbers of texture coordinates in a file, counted from 1.
+class UvNumbers {
+ public:
+  /// Writes those that the file does not have yet.
+  void append_new(std::string& text, std::span<const std::array<Vec2d, 3>> uv) {
+    for (const std::array<Vec2d, 3>& face : uv)
+      for (const Vec2d corner : face)
+        if (numbers_.try_emplace(key(corner), numbers_.size() + 1).second)
+          append_row(text, "vt", {static_cast<float>(corner.x), static_cast<float>(corner.y)});
+  }
+  std::size_t of(Vec2d uv) const { return numbers_.at(key(uv)); }
+
+ private:
+  using Bits = std::array<std::uint32_t, 2>;
+
+  static Bits key(Vec2d uv) {
+    return {std::bit_cast<std::uint32_t>(static_cast<float>(uv.x)),
+            std::bit_cast<std::uint32_t>(static_cast<float>(uv.y))};
+  }
+  std::map<Bits, std::size_t> numbers_;
+};
 
 std::string describe(const Triangle& face) {
   return "vertices " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " +
@@ -102,25 +137,25 @@ void check_edges(const TriangleMesh& mesh, const std::string& name,
 }
 
 void write_obj(const std::string& path, std::span<const NamedMesh> objects,
-               const std::string& comment) {
+               const std::string& comment, ObjUv uv) {
   std::string text = comment.empty() ? "" : "# " + comment + "\n";
   std::size_t first = 1;
+  UvNumbers numbers;
   for (const NamedMesh& object : objects) {
-    text += "g " + object.name + "\n";
-    for (Vec3f p : object.positions) {
-      text += "v ";
-      append_number(text, p.x);
-      text += ' ';
-      append_number(text, p.y);
-      text += ' ';
-      append_number(text, p.z);
-      text += '\n';
-    }
-    for (const Triangle& face : object.faces) {
+    text += "g " + file_line(object.name) + "\n";
+    for (const Vec3f p : object.positions) append_row(text, "v", {p.x, p.y, p.z});
+
+    // Corners with the same texture coordinates share one entry of the file.
+    const bool with_uv = uv == ObjUv::written && !object.uv.empty();
+    if (with_uv) numbers.append_new(text, object.uv);
+    for (std::size_t f = 0; f < object.faces.size(); ++f) {
       text += 'f';
-      for (Index v : face) {
+      for (std::size_t c = 0; c < 3; ++c) {
         text += ' ';
-        append_index(text, first + static_cast<std::size_t>(v));
+        append_index(text, first + static_cast<std::size_t>(object.faces[f][c]));
+        if (!with_uv) continue;
+        text += '/';
+        append_index(text, numbers.of(object.uv[f][c]));
       }
       text += '\n';
     }

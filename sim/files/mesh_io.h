@@ -65,14 +65,17 @@ struct NamedMesh {
   std::span<const Vec3f> positions;
   std::span<const Triangle> faces;  ///< indices into positions
   /// Texture coordinates of the corners of the faces, where the mesh has them. Formats of a
-  /// single frame leave them out.
+  /// single frame leave them out unless they are asked for.
   std::span<const std::array<Vec2d, 3>> uv = {};
 };
+
+/// Whether an OBJ file has the texture coordinates of its objects.
+enum class ObjUv { left_out, written };
 
 /// One group per object, coordinates with 9 significant digits; written beside and renamed. The
 /// comment is the first line.
 void write_obj(const std::string& path, std::span<const NamedMesh> objects,
-               const std::string& comment = "");
+               const std::string& comment = "", ObjUv uv = ObjUv::left_out);
 
 /// One mesh of all objects, binary, little endian: positions in single precision, bit for bit. A
 /// comment for each object gives its name and its first and number of vertices and faces.

@@ -21,7 +21,7 @@ SOURCE = re.compile(r"[\w*]+\.(h|cpp|cu|py|sh|glsl)")
 PARAMETERS = "sim/scene/parameters.cpp"
 OPTIONS = ("app/cli/commands.cpp", "app/common/command_options.h")
 # Rooms of coming features, by name.
-COMING = {"sim/files/export_*.cpp", "sim/files/checkpoint.*"}
+COMING = {"sim/files/checkpoint.*"}
 
 
 def documents(root):

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/common/dressing_progress.h"
+#include "app/common/frame_formats.h"
 #include "app/common/headless.h"
 #include "kernels/parallel/profile.h"
 #include "sim/files/error.h"
@@ -85,13 +86,7 @@ Recording begin_recording(const SimulationOptions& common, Build build) {
 
 /// The formats that --export names; OBJ where it names none.
 std::vector<FrameFormat> export_formats(const RunOptions& options) {
-  if (options.exports.empty()) return {FrameFormat::obj};
-  std::vector<FrameFormat> formats;
-  for (const std::string& name : options.exports) {
-    const auto found = std::ranges::find(kFrameFormats, name);
-    formats.push_back(static_cast<FrameFormat>(found - std::begin(kFrameFormats)));
-  }
-  return formats;
+  return options.exports.empty() ? std::vector{FrameFormat::obj} : frame_formats(options.exports);
 }
 
 /// The files that are written while a run goes.

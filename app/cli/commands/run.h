@@ -8,13 +8,10 @@
 
 namespace icloth {
 
-/// Names of the formats of --export, in the order of FrameFormat.
-inline constexpr const char* kFrameFormats[] = {"obj", "ply", "pc2", "mdd", "usda"};
-
 struct RunOptions {
   SimulationOptions simulation;
   std::string out;                   ///< folder of exported frames
-  std::vector<std::string> exports;  ///< of kFrameFormats; empty: obj
+  std::vector<std::string> exports;  ///< formats, app/common/frame_formats.h; empty: obj
   long every = 1;                    ///< export each K-th step
   std::string stats_file;            ///< .csv or .json; empty: none
   std::string input_file;            ///< recording whose drags are applied; empty: the script
