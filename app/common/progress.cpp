@@ -5,8 +5,6 @@
 #include <cstdio>
 
 namespace icloth {
-namespace {
-
 std::string duration_text(double seconds) {
   char text[32];
   const long s = static_cast<long>(seconds + 0.5);
@@ -18,8 +16,6 @@ std::string duration_text(double seconds) {
     std::snprintf(text, sizeof text, "%ld:%02ld h", s / 3600, s / 60 % 60);
   return text;
 }
-
-}  // namespace
 
 Progress::Progress(std::string what, long total, bool quiet)
     : what_(std::move(what)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO)) {}

@@ -6,6 +6,9 @@
 
 namespace icloth {
 
+/// A time for a line of progress: "42 s", "3:05 min", "1:20 h".
+std::string duration_text(double seconds);
+
 /// A line on stderr when that is a terminal, from the second second on; it is erased at the end.
 class Progress {
  public:

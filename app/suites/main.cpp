@@ -10,7 +10,8 @@ namespace {
 
 /// The options of the suites, of which some belong to a few suites only.
 void add_options(CLI::App& app, BenchOptions& bench) {
-  app.add_option("SUITE", bench.suite, "quick, paper, accuracy, stability, validation or solver")
+  app.add_option("SUITE", bench.suite,
+                 "quick, paper, scaling, accuracy, stability, validation or solver")
       ->capture_default_str();
   app.add_option("--out", bench.out, "folder of report.html, results.json and tables");
   add_device_option(app, bench.device);
@@ -19,8 +20,12 @@ void add_options(CLI::App& app, BenchOptions& bench) {
   app.add_flag("--quiet", bench.quiet, "no progress line");
 
   // These options are for some of the suites only.
-  app.add_option("--case", bench.only,
-                 "accuracy, stability, validation, solver: only cases whose name holds this");
+  app.add_option(
+      "--case", bench.only,
+      "accuracy, scaling, stability, validation, solver: only cases whose name holds this");
+  app.add_option("--scale", bench.scale, "scaling: share of the number of triangles")
+      ->check(CLI::Range(1e-3, 10.0))
+      ->capture_default_str();
   app.add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");
   app.add_option("--soak", bench.soak, "stability: simulated seconds of random dragging")
       ->check(CLI::Range(0.1, 1e6))

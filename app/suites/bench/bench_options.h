@@ -13,6 +13,7 @@ struct BenchOptions {
   bool quiet = false;  ///< no progress line
   std::string only;    ///< stability, validation, solver: cases whose name holds this; empty: all
   std::string frames;  ///< stability: folder for OBJ files of some of the states, empty: none
+  double scale = 1;    ///< paper, scaling: of the number of triangles
   double soak = 60;    ///< stability: simulated time of the random dragging [s]
 };
 
