@@ -136,7 +136,10 @@ void Commands::add_run() {
   command->add_option("--checkpoint-every", run.checkpoint_every, "at each K-th step")
       ->check(CLI::Range(1L, 1000000L))
       ->capture_default_str();
-  command->add_option("--resume", run.resume_file, "go on from this checkpoint");
+  command->add_option("--garments", run.garments_file,
+                      "strain of the garments, and how far they slide, FILE.csv");
+  command->add_option("--resume", run.resume_file, "go on from this checkpoint")
+      ->excludes("--garments");
   command->add_flag("--profile", run.profile, "print the time of every primitive; slower on CUDA");
   command
       ->add_option("--on-failure", run.on_failure,

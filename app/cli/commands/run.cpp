@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/cli/commands/garment_file.h"
 #include "app/common/dressing_progress.h"
 #include "app/common/frame_formats.h"
 #include "app/common/headless.h"
@@ -93,8 +94,9 @@ std::vector<FrameFormat> export_formats(const RunOptions& options) {
 class RunFiles {
  public:
   /// A run that goes on after `steps` steps adds to the files of the one before.
-  RunFiles(const RunOptions& options, std::int64_t steps)
+  RunFiles(const RunOptions& options, const Scene& scene, std::int64_t steps)
       : stats_(options.stats_file, steps),
+        garments_(options.garments_file, scene),
         frames_(options.out, options.every, export_formats(options), steps),
         step_(steps) {}
 
@@ -106,6 +108,7 @@ class RunFiles {
     // A refused step that ends the run leaves the state of the step before as the last one.
     const bool stopped = report && !report->accepted && job.stop_on_failure;
     if (report && !stopped) ++step_;
+    if (!stopped) garments_.add(simulator, step_);
     if (!frames_.wants(step_, last)) return;
     simulator.positions(positions_);
     frames_.write(named_meshes(*job.scene, positions_, job.origin.layouts).meshes, step_,
@@ -114,9 +117,11 @@ class RunFiles {
 
   std::int64_t steps() const { return step_; }
   void finish(const RunStatistics& statistics) { stats_.finish(statistics); }
+  std::string garment_summary() const { return garments_.summary(); }
 
  private:
   StatisticsFile stats_;
+  GarmentFile garments_;
   FrameExport frames_;
   std::vector<Vec3f> positions_;
   std::int64_t step_;
@@ -162,9 +167,9 @@ int run_run(const RunOptions& options) {
 
   // Those of a run that is resumed are touched only when its checkpoint was found to fit.
   std::optional<RunFiles> files;
-  if (!resumed) files.emplace(options, 0);
+  if (!resumed) files.emplace(options, *job.scene, 0);
   job.watch = [&](const Simulator& simulator, const StepReport* report, bool last) {
-    if (!files) files.emplace(options, resumed->steps());
+    if (!files) files.emplace(options, *job.scene, resumed->steps());
     files->add(job, simulator, report, last);
   };
   profile_enable(options.profile);
@@ -176,6 +181,7 @@ int run_run(const RunOptions& options) {
   files->finish(result.statistics);
   if (!options.record_file.empty()) save_recording(record, options.record_file);
   print_end(options, job.build, files->steps(), result);
+  if (!options.simulation.quiet) std::fputs(files->garment_summary().c_str(), stdout);
   return result.clean() ? 0 : 1;
 }
 

@@ -14,6 +14,7 @@ struct RunOptions {
   std::vector<std::string> exports;  ///< formats, app/common/frame_formats.h; empty: obj
   long every = 1;                    ///< export each K-th step
   std::string stats_file;            ///< .csv or .json; empty: none
+  std::string garments_file;         ///< .csv of how garments are worn; empty: none
   std::string input_file;            ///< recording whose drags are applied; empty: the script
   std::string record_file;           ///< the run is saved here; empty: not
   std::string checkpoint_file;       ///< the state is saved here; empty: not
