@@ -109,8 +109,8 @@ def tiered():
     back = blocks.yoke('yoke_back', 35, 51, 18, .12, quarters, WAIST)
     front.place((0, 108, 16))
     back.place((0, 108, -18), (0, 180, 0))
-    tiers = [tier(1, 25.5, 29.5, 22, 88, 20), tier(2, 29.5 * FULL, 39.5, 28, 64, 25),
-             tier(3, 39.5 * FULL, 68, 30, 35, 33)]
+    tiers = [tier(1, 25.5, 30, 16, 88, 20), tier(2, 30 * FULL, 46, 20, 69, 26),
+             tier(3, 46 * FULL, 70, 22, 46, 35)]
     pattern.add(front, back, *(panel for ring in tiers for panel in ring))
     pattern.sew(front, 'seam+', back, 'seam-')
     pattern.sew(front, 'seam-', back, 'seam+')
@@ -124,7 +124,17 @@ def tiered():
     return pattern
 
 
-FULL = 1.2  # length of a gathered border over that of the border it is sewn to
+def flounce():
+    """A short circle skirt, to be worn over the yoke and the first tier of the tiered skirt."""
+    pattern = Pattern('flounce')
+    gores = skirt_gores(90, 11.8, 32)
+    blocks.place_round(gores, 118, 14, 50)
+    pattern.add(*gores)
+    blocks.sew_round(pattern, gores)
+    return pattern
+
+
+FULL = 1.3  # length of a gathered border over that of the border it is sewn to
 BORDERS = (('hem_b', 'waist_a'), ('hem_a', 'waist_b'))  # that are sewn together
 
 
@@ -160,10 +170,11 @@ def andy_shirt():
 
 
 def andy_trousers():
-    size = dict(crotch=22, hip_at=13, knee_at=44, length=73,
-                front=dict(waist=16.7, hip=19, fork=4, knee=18, ankle=16, slant=0, **{'raise': 0}),
-                back=dict(waist=17.7, hip=20.5, fork=7, knee=20, ankle=18, slant=1, **{'raise': 1}))
-    return make_trousers('andy_trousers', size, 57.5, 12, -14)
+    # Wide at the hips and in the legs, with a low crotch: he kicks as high as his hips.
+    size = dict(crotch=24, hip_at=14, knee_at=45, length=73,
+                front=dict(waist=16.7, hip=20.5, fork=5, knee=20, ankle=17, slant=0, **{'raise': 0}),
+                back=dict(waist=17.7, hip=22, fork=9, knee=22, ankle=19, slant=1.5, **{'raise': 1.5}))
+    return make_trousers('andy_trousers', size, 56, 12, -14)
 
 
 def andy_jacket():
@@ -171,7 +182,7 @@ def andy_jacket():
     size = dict(neck=8.0, shoulder=(17.5, -2.6), chest=23.5, armhole=21.5, hem=24.5, length=46,
                 front_neck=8, back_neck=2.2)
     return open_jacket('andy_jacket', size, BOY_SHOULDER, 116, 17, -19, 19,
-                       sleeve=(16.5, 31, 13), arm=(9.5, 6.4, 4))
+                       sleeve=(17.5, 31, 14.5), arm=(9.5, 6.4, 4))
 
 
 def open_jacket(name, size, shoulder, neck_height, front_at, back_at, bend, sleeve=None, arm=None):
@@ -219,5 +230,5 @@ def bishop_vest():
 
 
 GARMENTS = dict(tee=tee, trousers=trousers, dress=dress, tank=tank, tiered=tiered,
-                andy_shirt=andy_shirt, andy_trousers=andy_trousers, andy_jacket=andy_jacket,
-                bishop_blouse=bishop_blouse, bishop_skirt=bishop_skirt, bishop_vest=bishop_vest)
+                flounce=flounce, andy_shirt=andy_shirt, andy_trousers=andy_trousers,
+                andy_jacket=andy_jacket, bishop_blouse=bishop_blouse, bishop_skirt=bishop_skirt, bishop_vest=bishop_vest)
