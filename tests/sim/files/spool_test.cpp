@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <random>
 
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -177,6 +178,44 @@ TEST(Spool, WhatIsDamagedIsRefusedWithItsFileAndValue) {
   // A count that the others do not have takes no memory.
   EXPECT_NE(refusal("objects.csv", replace("4,", "400000000,")).find("expected 400000000"),
             std::string::npos);
+}
+
+TEST(Spool, AnyBytesAreReadOrRefused) {
+  const TemporaryFolder folder;
+  run(folder.path("cut"), 23, false);
+  std::mt19937 random(4);
+  const auto below = [&](std::size_t n) { return random() % n; };
+
+  // Bytes of a file are changed, taken away or doubled; what is still accepted can be exported.
+  std::size_t accepted = 0;
+  const std::vector<std::string> names = {"frames.csv", "objects.csv", "cloth_b_c_d.pc2",
+                                          "cloth_b_c_d.obj", "obstacle_a.pc2"};
+  for (int i = 0; i < 1000; ++i) {
+    const std::string path = folder.path("cut/" + names[below(names.size())]);
+    const std::string bytes = read_file(path);
+    std::string changed = bytes;
+    for (std::size_t k = below(3) + 1; k > 0 && !changed.empty(); --k) {
+      const std::size_t place = below(changed.size());
+      if (below(3) == 0)
+        changed.erase(place, below(9));
+      else if (below(2) == 0)
+        changed.insert(place, changed.substr(place, below(40)));
+      else
+        changed[place] = static_cast<char>(below(2) == 0 ? random() : "0,-9\n."[below(6)]);
+    }
+    write_file(path, changed);
+    try {
+      const Spool spool = read_spool(folder.path("cut"));
+      fs::create_directories(folder.path("made"));
+      for (const FrameFormat format : kAll) export_spool(spool, folder.path("made"), format);
+      ++accepted;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+    write_file(path, bytes);
+  }
+  EXPECT_GT(accepted, 100u);
+  EXPECT_LT(accepted, 900u);
 }
 
 TEST(Spool, OtherFoldersAreNone) {
