@@ -34,6 +34,33 @@ constexpr Preset kPresets[] = {
     {"accurate", "Accurate", kAccurate, "For measuring: small steps of second order."},
 };
 
+// Tang et al. 2018 (PSCC) and 2016 (CAMA) are compared with by Section 5.3. Both test all pairs in
+// every round, and both are taken to respond by the linear impact zones of Harmon et al. 2008.
+constexpr Preset::Setting kOwn[] = {
+    {"broad_phase.method", "tree"}, {"ccd.incremental", "on"}, {"impact_zones.solver", "dual"}};
+constexpr Preset::Setting kPscc[] = {
+    {"broad_phase.method", "hash"}, {"ccd.incremental", "off"}, {"impact_zones.solver", "linear"}};
+constexpr Preset::Setting kCama[] = {
+    {"broad_phase.method", "tree"}, {"ccd.incremental", "off"}, {"impact_zones.solver", "linear"}};
+
+constexpr Preset kModes[] = {
+    {"icloth", "icloth", kOwn, "Trees, incremental rounds, non-linear impact zones: the defaults."},
+    {"pscc", "PSCC-style, our implementation", kPscc,
+     "Spatial hashing, all pairs in every round, linear impact zones."},
+    {"cama", "CAMA-style, our implementation", kCama,
+     "Trees, all pairs in every round, linear impact zones."},
+};
+
+/// The entry of that name; `what` stands for it in the message where there is none.
+const Preset& find_named(std::span<const Preset> list, std::string_view name, const char* what) {
+  std::string names;
+  for (const Preset& preset : list) {
+    if (preset.name == name) return preset;
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  throw InputError(what + (" " + in_quotes(name)) + ", expected one of " + names);
+}
+
 /// One measured point of a scene.
 std::string line_of(const nlohmann::json& point, const nlohmann::json& own) {
   char text[160];
@@ -62,13 +89,12 @@ std::string measured_results(const Preset& preset) {
   }
 }
 
-const Preset& find_preset(std::string_view name) {
-  std::string names;
-  for (const Preset& preset : kPresets) {
-    if (preset.name == name) return preset;
-    names += (names.empty() ? "" : ", ") + std::string(preset.name);
-  }
-  throw InputError("preset " + in_quotes(name) + ", expected one of " + names);
+const Preset& find_preset(std::string_view name) { return find_named(kPresets, name, "preset"); }
+
+std::span<const Preset> collision_modes() { return kModes; }
+
+const Preset& find_collision_mode(std::string_view name) {
+  return find_named(kModes, name, "mode");
 }
 
 void apply_preset(Parameters& parameters, const Preset& preset) {

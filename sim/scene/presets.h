@@ -31,6 +31,13 @@ std::string measured_results(const Preset& preset);
 /// Throws InputError that names the presets.
 const Preset& find_preset(std::string_view name);
 
+/// Ways of handling collisions to compare with: that of this program, and those of two earlier
+/// simulators as far as its stages reach. `--set mode=NAME` chooses one.
+std::span<const Preset> collision_modes();
+
+/// Throws InputError that names the modes.
+const Preset& find_collision_mode(std::string_view name);
+
 void apply_preset(Parameters& parameters, const Preset& preset);
 /// Whether the parameters have all of its values.
 bool is_set(const Parameters& parameters, const Preset& preset);

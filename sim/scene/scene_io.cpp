@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "sim/files/assets.h"
 #include "sim/files/box.h"
@@ -30,7 +31,8 @@ namespace fs = std::filesystem;
 struct Overrides {
   bool repair_start = false;
   std::vector<std::pair<std::string_view, std::string_view>> parameters;
-  double triangles = 0;  ///< 0: as the scene says
+  double triangles = 0;              ///< 0: as the scene says
+  std::optional<double> clip_start;  ///< [s]; none: as the scene says
 };
 
 double parse_triangles(std::string_view text, Index most) {
@@ -40,6 +42,15 @@ double parse_triangles(std::string_view text, Index most) {
     throw InputError("--set triangles: value " + in_quotes(text) +
                      ", expected a whole number from 2 to " + std::to_string(most));
   return number;
+}
+
+double parse_clip_start(std::string_view text) {
+  double start = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), start);
+  if (error != std::errc{} || rest != text.data() + text.size() || !(start >= 0 && start <= 1e6))
+    throw InputError("--set clip_start: value " + in_quotes(text) +
+                     ", expected seconds from 0 to 1e6");
+  return start;
 }
 
 bool parse_switch(std::string_view key, std::string_view value) {
@@ -57,13 +68,16 @@ Overrides split_overrides(std::span<const std::string> arguments, const SceneLim
       throw InputError("--set: value " + in_quotes(argument) + ", expected KEY=VALUE");
     const std::string_view key = argument.substr(0, equals), value = argument.substr(equals + 1);
 
-    // A preset stands for several parameters; they keep their place in the order of arguments, so
-    // that later ones override it.
-    if (key == "preset") {
-      const auto settings = find_preset(value).settings;
+    // A preset or a mode stands for several parameters; they keep their place in the order of
+    // arguments, so that later ones override it.
+    if (key == "preset" || key == "mode") {
+      const auto settings =
+          (key == "mode" ? find_collision_mode(value) : find_preset(value)).settings;
       overrides.parameters.insert(overrides.parameters.end(), settings.begin(), settings.end());
     } else if (key == "triangles") {
       overrides.triangles = parse_triangles(value, limits.triangles);
+    } else if (key == "clip_start") {
+      overrides.clip_start = parse_clip_start(value);
     } else if (key == "repair_start") {
       overrides.repair_start = parse_switch(key, value);
     } else {
@@ -161,39 +175,54 @@ std::string scene_path(const std::string& argument) {
   return path;
 }
 
-FileScene scene_of_json(const std::string& argument, double triangles, const SceneLimits& limits,
-                        SceneOrigin& origin) {
+/// Whether an obstacle plays a clip or a cache; ill-formed entries are left to the parser.
+bool has_played_body(const nlohmann::json& scene) {
+  if (!scene.is_object() || !scene.contains("obstacles")) return false;
+  return std::ranges::any_of(scene["obstacles"], [](const nlohmann::json& obstacle) {
+    return obstacle.is_object() && (obstacle.contains("clip") || obstacle.contains("animation"));
+  });
+}
+
+FileScene scene_of_json(const std::string& argument, const Overrides& set,
+                        const SceneLimits& limits, SceneOrigin& origin) {
   const std::string path = scene_path(argument);
   const nlohmann::json json = read_json(path);
   SceneFolder folder{
-      {fs::path(path).parent_path().string(), limits.allow_outside}, 1, limits, nullptr};
+      {fs::path(path).parent_path().string(), limits.allow_outside}, 1, {}, limits, nullptr};
 
   // The number of triangles is that of all grids and patterns together, which keep their
   // proportions.
-  if (triangles > 0) {
+  if (set.triangles > 0) {
     const double own = total_grid_triangles(json);
     if (!(own > 0))
       throw InputError(shown_path(path) +
                        ": --set triangles: no cloth of the scene is a grid or a pattern");
-    folder.triangle_scale = triangles / own;
+    folder.triangle_scale = set.triangles / own;
   }
+
+  // All bodies that play something start at the same moment, so that they stay together.
+  folder.clip_start = set.clip_start;
+  if (set.clip_start && !has_played_body(json))
+    throw InputError(shown_path(path) + ": --set clip_start: no body of the scene plays a clip");
   const AirSettings air{.drag = sets_parameter(json, "wind", "air_drag"),
                         .density = sets_parameter(json, "wind", "air_density")};
   return {parse_scene(json, shown_path(path), folder, origin), air};
 }
 
-FileScene read_scene(const std::string& argument, double triangles, const SceneLimits& limits,
+FileScene read_scene(const std::string& argument, const Overrides& set, const SceneLimits& limits,
                      SceneOrigin& origin) {
   const bool is_mesh = is_mesh_name(argument);
-  if (is_mesh && triangles > 0)
+  if (is_mesh && set.triangles > 0)
     throw InputError(shown_path(argument) + ": --set triangles: a mesh file has no grid");
-  FileScene file = is_mesh ? scene_of_mesh(argument, origin)
-                           : scene_of_json(argument, triangles, limits, origin);
+  if (is_mesh && set.clip_start)
+    throw InputError(shown_path(argument) + ": --set clip_start: a mesh file plays no clip");
+  FileScene file =
+      is_mesh ? scene_of_mesh(argument, origin) : scene_of_json(argument, set, limits, origin);
   file.scene.source = argument;
 
   // Thicknesses that a scene gives for its own mesh do not suit a coarser or finer one.
   // The mesh of a pattern is made here, so a scene has no numbers for it.
-  if (is_mesh || triangles > 0 || !file.scene.garments.empty()) fit_thickness(file.scene);
+  if (is_mesh || set.triangles > 0 || !file.scene.garments.empty()) fit_thickness(file.scene);
   return file;
 }
 
@@ -246,7 +275,7 @@ std::shared_ptr<const Scene> load_scene(const std::string& argument,
   const Overrides set = split_overrides(overrides, limits);
 
   // The command line wins over the scene file, so it comes after it.
-  FileScene file = read_scene(argument, set.triangles, limits, *origin);
+  FileScene file = read_scene(argument, set, limits, *origin);
   set_parameters(file, set);
   still_air_without_drag(file, *origin);
 

@@ -26,9 +26,11 @@ struct SceneOrigin {
 
 /// SCENE argument of the command line: built-in name, scene JSON, or mesh file.
 /// `overrides` are --set arguments "KEY=VALUE"; keys are parameters, "triangles" (of all grids
-/// together), "preset" (sim/scene/presets.h), or "repair_start" (on: shallow intersections are
-/// separated, sim/scene/repair.h; with garments that is left to open_scene). `origin` is filled
-/// where it is given. Throws InputError with one line: file, element, value, what was expected.
+/// together), "clip_start" (moment at which bodies start what they play [s], in place of their own
+/// "start"), "preset" and "mode" (sim/scene/presets.h), or "repair_start" (on: shallow
+/// intersections are separated, sim/scene/repair.h; with garments that is left to open_scene).
+/// `origin` is filled where it is given. Throws InputError with one line: file, element, value, what
+/// was expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits = {},

@@ -23,6 +23,7 @@ struct LoadedCloth {
 struct SceneFolder {
   FileScope files;            ///< they are looked for in its folder, then in the assets folder
   double triangle_scale = 1;  ///< factor on the triangles of every grid
+  std::optional<double> clip_start;  ///< in place of "start" of what bodies play [s]
   SceneLimits limits;
   /// Lines that the user should read go here; null: they are dropped.
   std::vector<std::string>* notes = nullptr;

@@ -46,7 +46,7 @@ std::size_t find_clip(const JsonValue& value, const std::vector<Clip>& clips,
   value.refuse("a clip of " + file + ", by its name or counted from 0: " + clip_names(clips));
 }
 
-Playback parse_playback(JsonObject& object, bool plays) {
+Playback parse_playback(JsonObject& object, const SceneFolder& folder, bool plays) {
   if (!plays) {
     for (const char* key : {"start", "speed", "loop", "blend_in"})
       if (object.has(key))
@@ -55,6 +55,7 @@ Playback parse_playback(JsonObject& object, bool plays) {
   }
   Playback playback;
   playback.start = object.number("start", 0, {0, 1e6});
+  playback.start = folder.clip_start.value_or(playback.start);
   playback.speed = object.number("speed", 1, {-100, 100});
   playback.loop = object.boolean("loop", false);
   playback.blend_in = object.number("blend_in", 0, {0, 1e3});
@@ -151,7 +152,7 @@ void play_clip(JsonObject& object, const SceneFolder& folder, const PlacedBody& 
                 " gives the times of its clips in seconds");
 
   if (placed.offset > 0) offset_rig(*rig, placed.place, body.mesh.faces, placed.offset);
-  const Playback playback = parse_playback(object, true);
+  const Playback playback = parse_playback(object, folder, true);
   obstacle.poses = std::make_shared<SkinnedPoses>(rig, 0, playback, placed.place);
   if (playback.loop)
     note_jump(
@@ -192,7 +193,7 @@ void parse_point_cache(JsonObject& object, const SceneFolder& folder, const Plac
   // The frames are placed as the mesh is, and get the same skin.
   for (auto& frame : cache.frames)
     for (Vec3f& p : frame) p = convert<float>(placed.place(convert<double>(p)));
-  const Playback playback = parse_playback(object, true);
+  const Playback playback = parse_playback(object, folder, true);
   if (playback.blend_in == 0 && playback.start == 0)
     note_distance(cache.frames.front(), mesh.positions, shown_path(file), name, folder);
   std::vector<Vec3d> first;
@@ -229,7 +230,7 @@ void parse_poses(JsonObject& object, const SceneFolder& folder, const PlacedBody
   if (has_animation || has_clip)
     return parse_clip(object, has_clip ? "clip" : "animation", folder, placed, body, obstacle);
 
-  parse_playback(object, false);
+  parse_playback(object, folder, false);
   object.number("frame_rate", kFrameRate, {1e-3, 1e5});
   note_unused(body, placed, name, folder);
 }

@@ -359,6 +359,10 @@ TEST(BadInput, OverridesWithBadValuesAreRefused) {
   expect_error(load("thickness"), {"'thickness'", "KEY=VALUE"});
   expect_error(load("impact_zones.penalti=3"), {"impact_zones.penalti", "impact_zones.penalty"});
   expect_error(load("time_step=-1"), {"time_step", "'-1'", "to 0.1 s"});
+  expect_error(load("mode=psc"), {"mode", "'psc'", "icloth, pscc, cama"});
+  expect_error(load("clip_start=2"), {"clip_start", "no body of the scene plays a clip"});
+  expect_error(load("clip_start=-1"), {"clip_start", "'-1'", "from 0"});
+  expect_error(load("clip_start=nan"), {"clip_start", "'nan'", "from 0"});
 }
 
 TEST(BadInput, MaterialsWithBadValuesAreRefused) {

@@ -146,6 +146,44 @@ TEST(SceneIo, TrianglesOverrideRescalesAllGridsAndTheThickness) {
   EXPECT_EQ(own->parameters.proximity.thickness, 0.001);
 }
 
+TEST(SceneIo, ClipStartMovesTheMomentAndLeavesTheBindPoseOfABlend) {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& keys) {
+    return folder.write("dance.json",
+                        R"({"cloths": [{"mesh": {"grid": {"size": [1, 1]}}, "triangles": 8}],
+      "obstacles": [{"mesh": "bodies/woman.glb", "clip": "dance", )" +
+                            keys + "}]}");
+  };
+  const auto pose = [&](const std::string& keys, double time, bool changed) {
+    const auto scene = load(file(keys), changed ? std::vector<std::string>{"clip_start=3"}
+                                                : std::vector<std::string>{});
+    std::vector<Vec3d> out;
+    scene->obstacles[0].pose(time, out);
+    return out;
+  };
+
+  // The override stands for the key of the scene, whatever that says.
+  const std::string blended = R"("blend_in": 0.5)";
+  EXPECT_EQ(pose(blended + R"(, "start": 1)", 0.9, true),
+            pose(blended + R"(, "start": 3)", 0.9, false));
+  EXPECT_NE(pose(blended, 0.9, true), pose(blended, 0.9, false));
+  EXPECT_EQ(pose(blended, 0, true), pose(blended, 0, false)) << "the garments hang as they do";
+}
+
+TEST(SceneIo, AModeSetsHowCollisionsAreHandled) {
+  const Parameters pscc = load("flag", {"mode=pscc"})->parameters;
+  EXPECT_EQ(pscc.broad_phase.method, BroadPhaseMethod::hash);
+  EXPECT_EQ(pscc.impact_zones.solver, ZoneSolver::linear);
+  EXPECT_FALSE(pscc.ccd.incremental);
+  const Parameters cama = load("flag", {"mode=cama"})->parameters;
+  EXPECT_EQ(cama.broad_phase.method, BroadPhaseMethod::tree);
+  EXPECT_EQ(cama.impact_zones.solver, ZoneSolver::linear);
+  EXPECT_FALSE(cama.ccd.incremental);
+  EXPECT_EQ(dump_parameters(load("flag", {"mode=pscc", "mode=icloth"})->parameters),
+            dump_parameters(load("flag")->parameters))
+      << "our own way is that of the defaults";
+}
+
 TEST(SceneIo, BuiltInScenesStartWithoutIntersections) {
   for (const char* name : {"scarf", "sphere"}) {
     const auto scene = load(name, {"triangles=10000"});
