@@ -178,6 +178,7 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
   for (int round = 0;; ++round) {
     find_impacts(step, round == 0);
     if (round == 0) report.impacts_first += report.impacts_left;
+    report.impacts_in_rounds.push_back(report.impacts_left);
     if (report.impacts_left == 0) return true;
     if (!parameters_.impact_zones.enabled) return false;
     if (round == parameters_.impact_zones.max_rounds) {

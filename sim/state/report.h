@@ -66,6 +66,10 @@ struct StepReport {
   double seam_gap = 0;  ///< largest distance of a stitched pair [m]
   std::uint64_t state_hash = 0;
 
+  /// Impacts that were found in the step: before the first round of zones and after each round, for
+  /// every attempt at a substep one after the other. Rounds of the last resort are left out.
+  std::vector<std::int64_t> impacts_in_rounds;
+
   bool accepted = true;                  ///< false: the state before the step was kept
   bool finite = true;                    ///< false: NaN or infinity appeared and was thrown away
   std::vector<OffendingPair> offending;  ///< of a refused step, at most 100
