@@ -168,6 +168,24 @@ def parameter_table(_):
                     read_parameters(ROOT / "sim" / "scene"))
 
 
+def paper_table(name, columns=None):
+    """A table of `icloth bench paper` with some of its columns; a line where it is not recorded yet."""
+    def make(_):
+        rows = recorded("paper")["tables"].get(name)
+        if not rows:
+            return ["*Not recorded yet: `icloth bench paper --out FOLDER` writes it.*"]
+        head = columns or list(rows[0])
+        return markdown(head, [[number(row[key]) for key in head] for row in rows])
+    return make
+
+
+def paper_machine(_):
+    """What the recorded run of `icloth bench paper` was measured on."""
+    machine = recorded("paper")["machine"]
+    return [f"{machine['processor']}, {machine['threads']} threads, "
+            f"{machine['memory_bandwidth'] / 1e9:.1f} GB/s, {machine['compiler']}, commit `{machine['commit'][:7]}`."]
+
+
 def runs_table(_):
     """Which suites are recorded, each with the commit that it ran at."""
     rows = [["quick", (RESULTS / "quick.txt").read_text().splitlines()[0].rsplit(" ", 1)[1]]]
@@ -178,6 +196,13 @@ def runs_table(_):
 
 
 TABLES = {"quick": quick_table, "runs": runs_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
+          "paper_machine": paper_machine, "paper_speed": paper_table("fig8_speed"), "paper_collisions": paper_table("fig8_collisions"),
+          "paper_andy": paper_table("fig5_andy"), "paper_funnel": paper_table("fig5_funnel"), "paper_gradient": paper_table("fig6"),
+          "paper_large_steps": paper_table("fig7"), "paper_incremental": paper_table("fig9"), "paper_collision_steps": paper_table("fig10"),
+          "paper_time_steps": paper_table("fig11"), "paper_stages": paper_table("fig12"), "paper_responses": paper_table("response"),
+          "paper_attempts": paper_table("single_attempts"), "paper_frames": paper_table("frames"),
+          "paper_stretches": paper_table("stretches", ["benchmark", "steps", "what happens", "clip starts at [s]", "way", "steps made", "steps/s",
+                                                       "ms collisions", "substeps", "retries", "rounds", "rolled back", "penetrations"]),
           "zone_solvers": zone_solver_table, "preconditioners": preconditioner_table, "drape": drape_table}
 
 

@@ -22,10 +22,12 @@ void add_options(CLI::App& app, BenchOptions& bench) {
   // These options are for some of the suites only.
   app.add_option(
       "--case", bench.only,
-      "accuracy, scaling, stability, validation, solver: only cases whose name holds this");
-  app.add_option("--scale", bench.scale, "scaling: share of the number of triangles")
+      "accuracy, paper, scaling, stability, validation, solver: only cases whose name holds this");
+  app.add_option("--scale", bench.scale, "paper, scaling: share of the number of triangles")
       ->check(CLI::Range(1e-3, 10.0))
       ->capture_default_str();
+  app.add_flag("--continue", bench.go_on,
+               "paper: goes on with the measurements that --out has already");
   app.add_option("--frames", bench.frames, "stability: folder for every 10th state as OBJ files");
   app.add_option("--soak", bench.soak, "stability: simulated seconds of random dragging")
       ->check(CLI::Range(0.1, 1e6))

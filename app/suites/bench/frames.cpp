@@ -7,15 +7,16 @@
 namespace icloth {
 
 Frames::Frames(Build build, const std::string& scene, const std::vector<std::string>& overrides,
-               long first, long last, long every)
+               long first, long last, long every, const std::function<void()>& watch)
     : simulator_(make_simulator(build, load_scene(scene, overrides))),
       own_(simulator_->parameters()) {
   // The run itself; states are kept at regular steps.
-  Progress progress(scene, last, false);
+  Progress progress(scene, last, static_cast<bool>(watch));
   for (long step = 0; step < last; ++step) {
     if (step >= first && (step - first) % every == 0) states_.push_back(simulator_->snapshot());
     reports_.push_back(simulator_->step({}));
     progress.update(step + 1);
+    if (watch) watch();
   }
   progress.finish();
 }

@@ -13,9 +13,10 @@ namespace icloth {
 /// Runs a scene without scripted hands with its own parameters, and keeps some of its states.
 class Frames {
  public:
-  /// Keeps the state before every `every`-th step from `first` to `last`.
+  /// Keeps the state before every `every`-th step from `first` to `last`. `watch` is called after
+  /// each step, and may throw; without it a line tells how far the run is.
   Frames(Build build, const std::string& scene, const std::vector<std::string>& overrides,
-         long first, long last, long every);
+         long first, long last, long every, const std::function<void()>& watch = {});
 
   const std::vector<Snapshot>& states() const { return states_; }
   /// Reports of all steps of the run.

@@ -55,6 +55,13 @@ void Report::add(const Table& table) {
   }
 }
 
+void Report::add(const Section& section) {
+  heading(section.heading);
+  for (const std::string& line : section.texts) text(line);
+  for (const Table& table : section.tables) add(table);
+  for (const Plot& plot : section.plots) add(plot);
+}
+
 void Report::write(const std::string& folder) const {
   write_file(folder + "/report.html",
              "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +

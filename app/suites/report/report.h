@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/suites/report/plot.h"
+#include "app/suites/report/section.h"
 #include "app/suites/report/table.h"
 
 namespace icloth {
@@ -21,6 +22,8 @@ class Report {
   void add(const Plot& plot);
   /// Prints the table as well.
   void add(const Table& table);
+  /// Heading, texts, tables and plots in this order.
+  void add(const Section& section);
 
   /// Writes the files into an existing folder. Throws InputError.
   void write(const std::string& folder) const;
