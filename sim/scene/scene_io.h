@@ -29,8 +29,8 @@ struct SceneOrigin {
 /// together), "clip_start" (moment at which bodies start what they play [s], in place of their own
 /// "start"), "preset" and "mode" (sim/scene/presets.h), or "repair_start" (on: shallow
 /// intersections are separated, sim/scene/repair.h; with garments that is left to open_scene).
-/// `origin` is filled where it is given. Throws InputError with one line: file, element, value, what
-/// was expected.
+/// `origin` is filled where it is given. Throws InputError with one line: file, element, value,
+/// what was expected.
 std::shared_ptr<const Scene> load_scene(const std::string& argument,
                                         std::span<const std::string> overrides,
                                         const SceneLimits& limits = {},
