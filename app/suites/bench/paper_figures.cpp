@@ -49,8 +49,7 @@ void add_series(const PaperResults& results, const PaperScene& scene, const std:
   for (const Stretch& stretch : scene.stretches)
     if (const Json* result = results.find(scene, stretch, mode)) {
       std::string name = label + (label.empty() ? "" : ", ");
-      name += stretch.clip_start >= 0 ? "clip at " + format_number(stretch.clip_start) + " s"
-                                      : stretch_text(stretch);
+      name += stretch_text(stretch);
       plot.series.push_back(
           over_steps(std::move(name), column_of(result->at("rows"), column), stretch.first));
     }
@@ -94,6 +93,11 @@ void show_convergence(const PaperResults& results, const PaperScene& scene, cons
   // Time above, iterations below, as in the paper.
   Plot time{.title = "Time of the impact zones", .x_label = "step", .y_label = "ms", .series = {}};
   Plot rounds{.title = "Rounds", .x_label = "step", .y_label = "rounds", .series = {}};
+  if (const Json* run = results.find_run(scene, scene.stretches[0]); run && !scene.is_garment()) {
+    time.series.push_back(
+        over_steps("whole run", column_of(run->at("rows"), "ms_impact_zones"), 0));
+    rounds.series.push_back(over_steps("whole run", column_of(run->at("rows"), "rounds"), 0));
+  }
   add_series(results, scene, kOwnMode, "ms_impact_zones", "", time);
   add_series(results, scene, kOwnMode, "rounds", "", rounds);
   report.add(time);
@@ -407,8 +411,6 @@ void show_frames(const PaperResults& results, Report& report) {
     for (const Stretch& stretch : scene.stretches) {
       text += &stretch == &scene.stretches.front() ? ", steps " : "; ";
       text += stretch_text(stretch);
-      if (stretch.clip_start >= 0)
-        text += " with the clip from " + format_number(stretch.clip_start) + " s";
     }
     return text;
   };

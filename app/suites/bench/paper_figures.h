@@ -15,15 +15,14 @@ struct PaperResults {
   /// A result; null where there is none.
   const PaperStore::Json* find(const PaperScene& scene, const Stretch& stretch,
                                const std::string& mode) const;
+  /// All steps of the run to a stretch.
+  const PaperStore::Json* find_run(const PaperScene& scene, const Stretch& stretch) const;
   /// The scene of that name; null where it was not measured.
   const PaperScene* scene(std::string_view name) const;
 };
 
 /// Collision handling of the first `count` steps [ms].
 double collision_ms(const PaperStore::Json& rows, std::size_t count = ~std::size_t{0});
-
-/// Steps of one way as "100–120" with the name of its scene, for tables.
-std::string stretch_text(const Stretch& stretch);
 
 /// Fig. 8 with its companions: speed, collision handling, every stretch, where the machine was not
 /// quiet.

@@ -1,7 +1,5 @@
 #include "app/suites/bench/paper_run.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "app/common/headless.h"
 #include "app/common/machine.h"
+#include "app/suites/bench/paper_quiet.h"
 #include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -28,20 +27,6 @@ constexpr double kSmallestTimed = 0.01;  // scale
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-/// Time that the processor has spent on this process [s].
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-std::string steps_text(const Stretch& stretch) {
-  return std::to_string(stretch.first) + "–" + std::to_string(stretch.end());
 }
 
 }  // namespace
@@ -350,13 +335,13 @@ PaperRun::Json PaperRun::measure_mode(const Stretch& stretch, const PaperMode& m
   simulator_->set_parameters(parameters);
   simulator_->restore(start);
   Json result = {{"start_hash", hash_text(simulator_->state_hash())}};
-  const std::string what = std::string(scene_.title) + " " + steps_text(stretch) + ", " + mode.name;
+  const std::string what =
+      std::string(scene_.title) + " " + stretch_text(stretch) + ", " + mode.name;
 
-  // The steps themselves, with the time that the processor spends on this process meanwhile.
+  // The steps themselves, while the processor is watched.
   reset_peak_memory();
   PaperRows rows;
-  const double processor = processor_seconds();
-  const Clock::time_point begin = Clock::now();
+  const ProcessorWatch watch;
   for (long step = 0; step < mode.steps; ++step) {
     StepReport report = simulator_->step({});
     if (!report.accepted) {
@@ -366,23 +351,28 @@ PaperRun::Json PaperRun::measure_mode(const Stretch& stretch, const PaperMode& m
     rows.add(report, mode.impacts);
     context_.progress.advance(mode.cost * step_cost(), what + ", step " + std::to_string(step + 1) +
                                                            " of " + std::to_string(mode.steps));
-    if (seconds_since(begin) > kMostSeconds && mode.name != kOwnMode) {
+    if (watch.seconds() > kMostSeconds && mode.name != kOwnMode) {
       context_.progress.plan(-mode.cost * step_cost() * static_cast<double>(mode.steps - step - 1));
       break;
     }
   }
-  const double seconds = seconds_since(begin);
+  result["seconds"] = watch.seconds();
+  result["cores_share"] = watch.own_share(context_.threads);
+  result["others_share"] = watch.others_share();
 
-  // How quiet the machine was, and whether anything went through anything.
-  result["seconds"] = seconds;
-  result["cores_share"] = (processor_seconds() - processor) / (seconds * context_.threads);
+  // Whether anything went through anything.
   result["peak_memory"] = peak_memory_bytes();
   result["penetrations"] = count_penetrations(*simulator_);
   result["rows"] = rows.json();
 
+  // A line for those who watch; it says when others used the machine as well.
   const auto steps = static_cast<double>(rows.size());
-  context_.progress.print(what + ": " + std::to_string(rows.size()) + " steps, " +
-                          rounded_text(1e3 * steps / sum_of(rows.json(), "ms_total")) + " steps/s");
+  const double others = result["others_share"];
+  std::string line = what + ": " + std::to_string(rows.size()) + " steps, " +
+                     rounded_text(1e3 * steps / sum_of(rows.json(), "ms_total")) + " steps/s";
+  if (others > kMostOthers)
+    line += " (others used " + rounded_text(100 * others) + " % of the cores)";
+  context_.progress.print(line);
   return result;
 }
 

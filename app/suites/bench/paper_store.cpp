@@ -39,7 +39,17 @@ PaperStore::PaperStore(std::string folder, bool go_on) : folder_(std::move(folde
   std::error_code error;
   std::filesystem::create_directories(folder_ + "/checkpoints", error);
   if (error) throw InputError("--out " + folder_ + ": " + error.message());
-  if (go_on) load();
+  if (go_on) {
+    load();
+    return;
+  }
+
+  // Hours of measurements are not thrown away because an option was forgotten.
+  const std::string path = folder_ + "/progress.json";
+  if (!std::filesystem::exists(path, error)) return;
+  std::filesystem::rename(path, folder_ + "/progress.old.json", error);
+  note(path +
+       " of an earlier run is now progress.old.json (--continue would have gone on with it)");
 }
 
 void PaperStore::note(std::string line) {

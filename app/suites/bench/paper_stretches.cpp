@@ -3,7 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/files/text.h"
+
 namespace icloth {
+
+std::string steps_text(const Stretch& stretch) {
+  return std::to_string(stretch.first) + "–" + std::to_string(stretch.end());
+}
+
+std::string stretch_text(const Stretch& stretch) {
+  if (stretch.clip_start < 0) return steps_text(stretch);
+  return steps_text(stretch) + ", clip from " + rounded_text(stretch.clip_start, 4) + " s";
+}
 
 const std::vector<PaperScene>& paper_scenes() {
   static const std::vector<PaperScene> scenes = {

@@ -20,6 +20,11 @@ struct Stretch {
   long end() const { return first + steps; }
 };
 
+/// The steps as "100–140"; the moment at which the clip starts is not in it.
+std::string steps_text(const Stretch& stretch);
+/// The same with that moment: "80–100, clip from 3.55 s".
+std::string stretch_text(const Stretch& stretch);
+
 /// What the paper measured on a GTX 1080.
 struct PublishedSpeed {
   double cama, pscc, icloth;                  ///< [steps/s]

@@ -4,13 +4,13 @@
 
 #include "app/common/machine.h"
 #include "app/suites/bench/paper_figures.h"
+#include "app/suites/bench/paper_quiet.h"
 
 namespace icloth {
 namespace {
 
 using Json = PaperStore::Json;
 
-constexpr double kLeastShare = 0.8;   // of the cores; serial parts take some of it
 constexpr double kMostChange = 0.15;  // of the bandwidth between before and after
 
 /// Sums over stretches of a scene.
@@ -58,8 +58,7 @@ Sum whole_runs(const PaperResults& results, const PaperScene& scene) {
   for (const Stretch& stretch : scene.stretches) {
     const bool same_run = before && before->clip_start == stretch.clip_start;
     before = &stretch;
-    const std::string name = run_name(scene, stretch) + "/run";
-    const Json* run = results.context.store.find(name, key_of(results.context, scene, stretch));
+    const Json* run = results.find_run(scene, stretch);
     if (run && !same_run) sum.add(run->at("rows"));
   }
   return sum;
@@ -129,7 +128,7 @@ void add_collision_table(const PaperResults& results, Report& report) {
 /// Whether nothing else used the cores or the memory during a measurement. `machine`: of its
 /// stretch, null where the bandwidth was not measured.
 bool was_quiet(const Json& result, const Json* machine) {
-  if (result.at("cores_share").get<double>() < kLeastShare) return false;
+  if (result.at("others_share").get<double>() > kMostOthers) return false;
   if (!machine) return true;
   const double before = machine->at("before"), after = machine->at("after");
   return !(std::fabs(after - before) > kMostChange * before);
@@ -138,6 +137,11 @@ bool was_quiet(const Json& result, const Json* machine) {
 std::string bandwidth_text(const Json* machine, const char* when) {
   const double bandwidth = machine ? machine->at(when).get<double>() : 0;
   return bandwidth > 0 ? format_number(1e-9 * bandwidth, 3) : "–";
+}
+
+std::string others_text(const Json& result) {
+  const double share = result.at("others_share");
+  return share < 0 ? "–" : format_number(share, 2);
 }
 
 /// Every stretch and every way, with how the machine was meanwhile.
@@ -160,6 +164,7 @@ void add_stretch_table(const PaperResults& results, Report& report) {
                "penetrations",
                "max strain",
                "share of the cores",
+               "others' share",
                "GB/s before",
                "GB/s after",
                "quiet",
@@ -186,7 +191,7 @@ void add_stretch_table(const PaperResults& results, Report& report) {
         ++measured;
         noisy += was_quiet(*result, machine) ? 0 : 1;
         table.add({std::string(scene.title),
-                   stretch_text(stretch),
+                   steps_text(stretch),
                    std::string(stretch.what),
                    stretch.clip_start >= 0 ? format_number(stretch.clip_start) : "–",
                    mode.name,
@@ -202,6 +207,7 @@ void add_stretch_table(const PaperResults& results, Report& report) {
                    format_number(result->at("penetrations").get<double>()),
                    format_number(largest_of(rows, "max_strain"), 3),
                    format_number(result->at("cores_share").get<double>(), 2),
+                   others_text(*result),
                    bandwidth_text(machine, "before"),
                    bandwidth_text(machine, "after"),
                    was_quiet(*result, machine) ? "yes" : "no",
@@ -228,6 +234,11 @@ const Json* PaperResults::find(const PaperScene& scene_of, const Stretch& stretc
                             key_of(context, scene_of, stretch));
 }
 
+const Json* PaperResults::find_run(const PaperScene& scene_of, const Stretch& stretch) const {
+  return context.store.find(run_name(scene_of, stretch) + "/run",
+                            key_of(context, scene_of, stretch));
+}
+
 const PaperScene* PaperResults::scene(std::string_view name) const {
   const auto found = std::ranges::find(scenes, name, &PaperScene::name);
   return found == scenes.end() ? nullptr : &*found;
@@ -236,10 +247,6 @@ const PaperScene* PaperResults::scene(std::string_view name) const {
 double collision_ms(const Json& rows, std::size_t count) {
   return sum_of(rows, "ms_broad_phase", count) + sum_of(rows, "ms_ccd", count) +
          sum_of(rows, "ms_impact_zones", count);
-}
-
-std::string stretch_text(const Stretch& stretch) {
-  return std::to_string(stretch.first) + "–" + std::to_string(stretch.end());
 }
 
 void show_speed(const PaperResults& results, Report& report) {

@@ -82,6 +82,13 @@ TEST(PaperStore, KeepsResultsAndRefusesThoseOfAnotherKeyAndDamagedOnes) {
     EXPECT_NE(store.find("b", "key"), nullptr);
   }
 
+  // Without going on, what is there is put aside.
+  {
+    PaperStore store(folder.path(""), false);
+    EXPECT_EQ(store.find("b", "key"), nullptr);
+    EXPECT_EQ(read(folder.path("progress.old.json")), text);
+  }
+
   // Half a file, another file, and one of another version hold nothing.
   for (const std::string& bad :
        {text.substr(0, text.size() / 2), std::string("[1]"), std::string("{\"format\": 7}")}) {
