@@ -351,7 +351,7 @@ void show_single_attempts(const PaperResults& results, Report& report) {
   report.text(
       "The paper reports that the linear solver fails when the cloth tangles (Funnel, Twisting, "
       "Sphere) and takes many more iterations elsewhere. Here each solver has one attempt at the "
-      "first step of each stretch, of the whole time step and at most 200 rounds.");
+      "first step of each stretch, of the whole time step and at most 50 rounds.");
   Table table("single_attempts", "One step from the beginning of each stretch",
               {"benchmark", "steps", "solver", "impacts before", "rounds", "iterations",
                "impacts left", "ms impact zones"});

@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSaveInterval = 60;  // of wall time between saved states of a run [s]
-constexpr double kMostSeconds = 240;  // of a measurement; the step in progress is finished
+constexpr double kMostSeconds = 150;  // of a measurement; the step in progress is finished
 constexpr double kFewestTriangles = 100;
 constexpr double kSmallestTimed = 0.01;  // scale
 
