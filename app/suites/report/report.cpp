@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* kStyle =
     "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;margin:1em 0}caption{text-align:left;font-weight:bold;"
+    "table{border-collapse:collapse;margin:1em "
+    "0;display:block;overflow-x:auto}caption{text-align:left;font-weight:bold;"
     "padding:.3em 0}th,td{border:1px solid #ccc;padding:.2em .6em;text-align:left}"
     "td.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}";
 
