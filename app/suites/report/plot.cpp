@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kWidth = 760, kHeight = 360, kLeft = 70, kRight = 190, kTop = 36, kBottom = 52;
 // These are Okabe and Ito's colours, told apart by people with any colour vision.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73",
-                                    "#CC79A7", "#E69F00", "#56B4E9"};
+constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                    "#E69F00", "#56B4E9", "#000000"};
 
 std::string format(const char* pattern, double a, double b = 0, double c = 0, double d = 0) {
   char text[256];

@@ -2,9 +2,13 @@
 #include "app/suites/bench/scaling.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/suites/bench/power_fit.h"
 #include "app/suites/bench/scaling_model.h"
@@ -115,6 +119,30 @@ TEST(Scaling, TheReportOfTinySizesIsWholeAndFinite) {
   EXPECT_NE(html.find("floor"), std::string::npos);
   for (const char* name : {"sizes", "times", "exponents", "floors", "memory"})
     EXPECT_GT(read_file(folder.path("out/") + name + ".csv").size(), 20u) << name;
+}
+
+TEST(Scaling, ASignalEndsItWithAReport) {
+  const TemporaryFolder folder;
+  BenchOptions options;
+  options.suite = "scaling";
+  options.scale = 0.05;
+  options.threads = 1;
+  options.quiet = true;
+  options.out = folder.path("out");
+
+  // It is sent as soon as the suite listens, long before all sizes are done.
+  std::signal(SIGINT, SIG_DFL);
+  std::thread sender([] {
+    struct sigaction action {};
+    while (sigaction(SIGINT, nullptr, &action) == 0 && action.sa_handler == SIG_DFL)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    kill(getpid(), SIGINT);
+  });
+  EXPECT_EQ(run_scaling(options), 1);
+  sender.join();
+  const std::string html = read_file(folder.path("out/report.html"));
+  EXPECT_NE(html.find("Ended by SIGINT after "), std::string::npos);
+  expect_finite(nlohmann::json::parse(read_file(folder.path("out/results.json"))), "");
 }
 
 }  // namespace
