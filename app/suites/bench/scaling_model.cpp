@@ -5,17 +5,10 @@
 namespace icloth {
 namespace {
 
-// Bytes of what the arrays hold, in single precision.
-constexpr double kPosition = 12, kIndex = 4, kPair = 8, kBox = 24;
-constexpr double kBlock = 36;        // of the matrix
-constexpr double kFaceRest = 35;     // indices, inverse of the rest shape, area, fabric
-constexpr double kFaceTerm = 252;    // six blocks and three impulses
-constexpr double kHingeRest = 40;    // indices, rest angle, lengths, fabrics
-constexpr double kHingeTerm = 56;    // four gradients, stiffness, impulse
-constexpr double kContact = 88;      // a pair in proximity
-constexpr double kContactTerm = 52;  // its share of the system
-constexpr double kConstraint = 160;  // of an impact zone: kept, and ordered by zone
-constexpr double kTree = 8.0 / 7;    // nodes of all levels, eight children each, over the leaves
+using namespace array_entry;
+
+// Nodes of all levels of a tree, eight children each, over its leaves.
+constexpr double kTree = 8.0 / 7;
 
 /// The blocks that are stored of the symmetric matrix: the diagonal, and for each edge the pair of
 /// its ends and the pair of the corners across from it.
@@ -138,12 +131,12 @@ std::vector<std::string> model_text() {
       "edges of all objects; Vc, Fc: of the cloths; H: hinges; A: substeps and refused attempts.",
       "proximity: A (8 B a candidate pair + 12 B V + 88 B a pair in proximity).",
       "implicit: what the iterations of CG move (blocks of half the matrix, contacts, 15 vectors "
-      "and a block a row, each once an iteration) + for each linearisation 539 B Fc + 152 B H + 36 "
+      "and a block a row, each once an iteration) + for each linearisation 540 B Fc + 156 B H + 36 "
       "B a block of the matrix (Vc + Ec + H) + 60 B Vc + for each solve 140 B a contact + 48 B Vc.",
       "broad_phase: A (boxes and trees: 48 B V + 87 B F + 83 B E, 8 B a candidate pair, 36 B V).",
       "ccd: 8 B an elementary test + A 24 B V.",
-      "impact_zones: 5 B Vc a round + 160 B an impact.",
-      "other: 96 B Vc + 35 B Fc + 40 B H + 24 B V, to save, hash and measure the state.",
+      "impact_zones: 5 B Vc a round + 136 B an impact.",
+      "other: 96 B Vc + 36 B Fc + 44 B H + 24 B V, to save, hash and measure the state.",
       "Where a mesh fits into the caches, a stage may be faster than its floor."};
 }
 

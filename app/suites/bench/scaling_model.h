@@ -35,6 +35,19 @@ struct MeshCounts {
 };
 MeshCounts count_elements(const Scene& scene);
 
+/// Bytes of an entry of the arrays, in single precision.
+namespace array_entry {
+inline constexpr double kPosition = 12, kIndex = 4, kPair = 8, kBox = 24;
+inline constexpr double kBlock = 36;        ///< of the matrix
+inline constexpr double kFaceRest = 36;     ///< indices, inverse of the rest shape, area, fabric
+inline constexpr double kFaceTerm = 252;    ///< share of a face in the system
+inline constexpr double kHingeRest = 44;    ///< of a hinge: indices and rest shape
+inline constexpr double kHingeTerm = 56;    ///< its share of the system
+inline constexpr double kContact = 88;      ///< a pair in proximity
+inline constexpr double kContactTerm = 52;  ///< its share of the system
+inline constexpr double kConstraint = 136;  ///< of an impact zone: kept, and ordered by zone
+}  // namespace array_entry
+
 /// A number for each stage.
 using PerStage = std::array<double, kStages>;
 

@@ -1,4 +1,6 @@
 // Power laws that are known, and the bytes and the report of `bench scaling`.
+#define ICLOTH_BUILD cpu32
+#define ICLOTH_REAL float
 #include "app/suites/bench/scaling.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +14,14 @@
 
 #include "app/suites/bench/power_fit.h"
 #include "app/suites/bench/scaling_model.h"
+#include "kernels/bvh.h"
+#include "kernels/contact.h"
+#include "kernels/impact.h"
+#include "kernels/zones/zone_problem.h"
 #include "sim/files/file_io.h"
+#include "sim/mechanics/element_terms.h"
 #include "sim/scene/scene_io.h"
+#include "sim/state/topology.h"
 #include "tests/support/temporary_folder.h"
 
 namespace icloth {
@@ -65,6 +73,23 @@ TEST(ScalingModel, CountsTheElementsOfAMesh) {
   EXPECT_EQ(mesh.cloth_edges, 5);
   EXPECT_EQ(mesh.hinges, 1);
   EXPECT_EQ(mesh.faces, 2);
+}
+
+TEST(ScalingModel, HasTheSizesOfTheArraysOfTheStages) {
+  using namespace cpu32;
+  using namespace array_entry;
+  EXPECT_EQ(kPosition, sizeof(Vec3r));
+  EXPECT_EQ(kIndex, sizeof(Index));
+  EXPECT_EQ(kPair, sizeof(Pair));
+  EXPECT_EQ(kBox, sizeof(Box));
+  EXPECT_EQ(kBlock, sizeof(Mat3r));
+  EXPECT_EQ(kFaceRest, sizeof(Int3) + sizeof(Topology::Inverse) + sizeof(Real) + sizeof(Index));
+  EXPECT_EQ(kFaceTerm, sizeof(FaceTerm));
+  EXPECT_EQ(kHingeRest, sizeof(HingeRest));
+  EXPECT_EQ(kHingeTerm, sizeof(HingeTerm));
+  EXPECT_EQ(kContact, sizeof(Contact));
+  EXPECT_EQ(kContactTerm, sizeof(ContactTerm));
+  EXPECT_EQ(kConstraint, sizeof(KeptImpact) + sizeof(ZoneConstraint));
 }
 
 TEST(ScalingModel, ChargesEachStageForItsOwnWork) {
