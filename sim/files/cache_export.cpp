@@ -104,7 +104,7 @@ void CacheExport::begin(std::span<const NamedMesh> meshes, std::int64_t kept) {
     caches_.push_back(cache);
   }
   frames_ = kept;
-  if (kept == 0) write_object_list(folder_, caches_);
+  write_object_list(folder_, caches_);
 }
 
 void CacheExport::append(std::span<const NamedMesh> meshes) {

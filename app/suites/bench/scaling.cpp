@@ -71,6 +71,12 @@ std::shared_ptr<const Scene> scaling_scene(double triangles) {
   return std::make_shared<const Scene>(std::move(scene));
 }
 
+/// The bandwidth of the memory that the build computes in [bytes/s].
+double bandwidth(Build build) {
+  const ComputeDevice device = compute_device(build);
+  return device.name.empty() ? measure_memory_bandwidth() : device.copy_bandwidth;
+}
+
 /// Runs one size. Nothing where a signal ends it before the last step.
 std::optional<ScalingRow> measure(const Size& size, double triangles, Build build,
                                   const InterruptWatch& interrupts, ScalingProgress& progress) {
@@ -92,14 +98,9 @@ std::optional<ScalingRow> measure(const Size& size, double triangles, Build buil
     if (interrupts.noted()) return {};
   }
   row.peak_memory = peak_memory_bytes();
+  row.bandwidth = bandwidth(build);
   row.penetrations = count_penetrations(*simulator);
   return row;
-}
-
-/// The bandwidth of the memory that the build computes in [bytes/s].
-double bandwidth(const nlohmann::ordered_json& machine) {
-  return machine.contains("cuda") ? machine["cuda"]["copy_bandwidth"].get<double>()
-                                  : machine["memory_bandwidth"].get<double>();
 }
 
 std::vector<Size> chosen_sizes(const BenchOptions& options) {
@@ -115,10 +116,7 @@ std::vector<Size> chosen_sizes(const BenchOptions& options) {
 int run_scaling(const BenchOptions& options) {
   const std::vector<Size> sizes = chosen_sizes(options);
   const Build build = only_build(options);
-  make_output_folder(options.out);
-  set_thread_count(options.threads);
-  const nlohmann::ordered_json machine = describe_machine(options.threads, build == Build::cuda32);
-  Report report("icloth bench scaling", machine);
+  Report report = begin_report(options, build);
 
   // The time left follows from the work of all sizes.
   double total = 0;
@@ -143,7 +141,7 @@ int run_scaling(const BenchOptions& options) {
   progress.clear();
 
   // A signal leaves a report of the sizes that were finished.
-  report_scaling(rows, bandwidth(machine), report);
+  report_scaling(rows, report);
   const char* const signal = interrupts.noted();
   if (signal) {
     report.text("Ended by " + std::string(signal) + " after " + std::to_string(rows.size()) +

@@ -15,11 +15,12 @@ struct ScalingRow {
   double thickness = 0;    ///< of the cloth [m]
   RunStatistics steps;     ///< those that were measured
   double peak_memory = 0;  ///< of the process while it loaded and stepped [bytes]
+  double bandwidth = 0;    ///< of the memory, measured with the size [bytes/s]
   std::size_t refused = 0, penetrations = 0;
 };
 
-/// Adds times, fitted exponents, floors and memory; `bandwidth` [bytes/s]. Every number is finite:
-/// what cannot be measured is a dash.
-void report_scaling(const std::vector<ScalingRow>& rows, double bandwidth, Report& report);
+/// Adds times, fitted exponents, floors and memory. Every number is finite: what cannot be measured
+/// is a dash.
+void report_scaling(const std::vector<ScalingRow>& rows, Report& report);
 
 }  // namespace icloth
