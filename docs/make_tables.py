@@ -198,7 +198,7 @@ def runs_table(_):
 TABLES = {"quick": quick_table, "runs": runs_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
           "paper_machine": paper_machine, "paper_speed": paper_table("fig8_speed"), "paper_collisions": paper_table("fig8_collisions"),
           "paper_andy": paper_table("fig5_andy"), "paper_funnel": paper_table("fig5_funnel"), "paper_gradient": paper_table("fig6"),
-          "paper_large_steps": paper_table("fig7"), "paper_incremental": paper_table("fig9"), "paper_collision_steps": paper_table("fig10"),
+          "paper_large_steps": paper_table("fig7"), "paper_incremental": paper_table("fig9"), "paper_incremental_all": paper_table("fig9_all"), "paper_collision_steps": paper_table("fig10"),
           "paper_time_steps": paper_table("fig11"), "paper_stages": paper_table("fig12"), "paper_responses": paper_table("response"),
           "paper_attempts": paper_table("single_attempts"), "paper_frames": paper_table("frames"),
           "paper_stretches": paper_table("stretches", ["benchmark", "steps", "what happens", "clip starts at [s]", "way", "steps made", "steps/s",
