@@ -58,8 +58,9 @@ bool show_sphere_group(const PaperContext& context, const SphereGroup& group, Re
 
 /// Measures all that is chosen and not there yet.
 void measure_all(const BenchOptions& options, const PaperContext& context) {
+  const std::vector<PaperScene> scenes = scenes_at(context.scale);
   std::vector<PaperRun> runs;
-  for (const PaperScene& scene : paper_scenes())
+  for (const PaperScene& scene : scenes)
     if (chosen(options, scene.name))
       for (PaperRun& run : runs_of(context, scene)) runs.push_back(std::move(run));
 
@@ -77,12 +78,15 @@ void measure_all(const BenchOptions& options, const PaperContext& context) {
 /// Makes the report from what was measured.
 bool show_all(const BenchOptions& options, const PaperContext& context, Report& report) {
   PaperResults results{context, {}};
-  for (const PaperScene& scene : paper_scenes())
+  for (const PaperScene& scene : scenes_at(context.scale))
     if (chosen(options, scene.name)) results.scenes.push_back(scene);
   if (context.scale != 1)
-    report.text("The scenes have " + number_text(context.scale) +
-                " of the paper's triangles: a quick look, whose times are not those of the "
-                "paper's sizes.");
+    report.text(
+        "The scenes have " + number_text(context.scale) +
+        " of the paper's triangles, so that these times are not those of the paper's sizes." +
+        (context.scale < kQuickLook
+             ? " A quick look leaves out the stretches that take long to reach."
+             : ""));
 
   show_speed(results, report);
   show_single_attempts(results, report);

@@ -86,6 +86,15 @@ const std::vector<PaperScene>& paper_scenes() {
   return scenes;
 }
 
+std::vector<PaperScene> scenes_at(double scale) {
+  std::vector<PaperScene> scenes = paper_scenes();
+  if (scale >= kQuickLook) return scenes;
+  for (PaperScene& scene : scenes)
+    scene.stretches.resize(
+        std::min<std::size_t>(scene.stretches.size(), scene.is_garment() ? 1 : 2));
+  return scenes;
+}
+
 std::vector<FastMoment> fastest_moments(const Obstacle& obstacle, double blend_in, double duration,
                                         double window, std::size_t count) {
   constexpr double kSample = 0.01, kApart = 0.5;

@@ -42,8 +42,15 @@ struct PaperScene {
   bool is_garment() const { return stretches.front().clip_start >= 0; }
 };
 
-/// In the order of the paper's table.
+/// In the order of the paper's table, with all their stretches.
 const std::vector<PaperScene>& paper_scenes();
+
+/// Below this share of the paper's triangles a report is a quick look.
+inline constexpr double kQuickLook = 0.5;
+
+/// The scenes with the stretches that a report of this scale has: a quick look leaves out what
+/// takes long to reach, all but the first two stretches of a cloth and the first of a garment.
+std::vector<PaperScene> scenes_at(double scale);
 
 /// Seconds of a garment's run before its stretch: the scene's "blend_in", in which the body comes
 /// from its bind pose, and then the clip itself until the cloth follows it.

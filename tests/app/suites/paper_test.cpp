@@ -33,6 +33,14 @@ TEST(PaperStretches, HaveTwentyStepsAndTheirBaselinesFive) {
   }
 }
 
+TEST(PaperStretches, OfAQuickLookAreTheFirstOnes) {
+  for (const PaperScene& scene : scenes_at(0.1)) {
+    EXPECT_EQ(scene.stretches.size(), scene.is_garment() ? 1u : 2u) << scene.name;
+    EXPECT_LT(scene.stretches.back().end(), 421) << scene.name;
+  }
+  EXPECT_EQ(scenes_at(1)[1].stretches.size(), 3u);
+}
+
 TEST(PaperStretches, OfGarmentsAreWhereTheirBodiesAreFastest) {
   for (const PaperScene& scene : paper_scenes()) {
     if (!scene.is_garment()) continue;
@@ -163,9 +171,9 @@ TEST_F(PaperRunTest, WritesTheTablesWithFiniteNumbersFromEqualStartStates) {
     starts[row["steps"]].insert(row["start hash"].dump());
     different.insert(row["start hash"].dump());
   }
-  EXPECT_EQ(starts.size(), 3u);
+  EXPECT_EQ(starts.size(), 2u) << "a quick look";
   for (const auto& [steps, hash] : starts) EXPECT_EQ(hash.size(), 1u) << steps;
-  EXPECT_EQ(different.size(), 3u);
+  EXPECT_EQ(different.size(), 2u);
 }
 
 TEST_F(PaperRunTest, GoesOnAfterAnInterruptionAndRepeatsNothing) {
