@@ -285,6 +285,8 @@ Commands::Commands() {
   app.set_version_flag("--version", "icloth " + program_version());
   app.require_subcommand(1);
   app.footer("Without a command the scene is opened in a window: icloth [SCENE].");
+
+  // The help lists them in this order.
   add_view();
   add_run();
   add_render();

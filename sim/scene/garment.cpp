@@ -8,7 +8,6 @@
 #include "sim/scene/transforms.h"
 
 namespace icloth {
-
 namespace {
 
 std::shared_ptr<const MeshedPattern> mesh_with(const Pattern& pattern, Index triangles) {
@@ -17,14 +16,16 @@ std::shared_ptr<const MeshedPattern> mesh_with(const Pattern& pattern, Index tri
 }
 
 /// Meshes the pattern coarse and divides it until it has about so many triangles. Does nothing and
-/// returns false where the divided pattern would not be sewn as the coarse one is.
+/// returns false where they are few, or the divided pattern would not be sewn as the coarse one is.
 bool mesh_in_levels(const Pattern& pattern, Index triangles, Garment& garment) {
   if (triangles > kMostPatternTriangles) return false;  // meshing it as a whole says why
   Index coarsest = triangles;
   int levels = 0;
   for (; coarsest > kMostDressedTriangles; coarsest /= 4) ++levels;
-  std::shared_ptr<const MeshedPattern> meshed = mesh_with(pattern, coarsest);
+  if (levels == 0) return false;
 
+  // Each level is sewn as well, which tells whether it fits the one before.
+  std::shared_ptr<const MeshedPattern> meshed = mesh_with(pattern, coarsest);
   const std::vector<PanelPlacement> placements = placements_of(pattern);
   SewnGarment sewn = sew_panels(*meshed, placements);
   std::vector<PatternDivision> divisions;

@@ -17,7 +17,7 @@ std::string distance_text(const std::optional<double>& distance) {
   return text;
 }
 
-/// The name of a panel, from a file that may hold anything, as a field of a CSV file.
+/// The name of a garment or a panel, from a file that may hold anything, as a field of a CSV file.
 std::string field(std::string name) {
   for (char& c : name)
     if (c == ',' || c == '"' || static_cast<unsigned char>(c) < ' ') c = '_';
@@ -55,7 +55,7 @@ void GarmentFile::add(const Simulator& simulator, std::int64_t step) {
     char numbers[64];
     std::snprintf(numbers, sizeof numbers, "%lld,%.6g,", static_cast<long long>(step),
                   simulator.time());
-    rows += numbers + fit.name;
+    rows += numbers + field(fit.name);
     std::snprintf(numbers, sizeof numbers, ",%.4f,%.4f,", fit.strain_p95, fit.largest_strain);
     rows += numbers + field(fit.panel) + "," + distance_text(fit.waist) + "," +
             distance_text(fit.collar) + "\n";
