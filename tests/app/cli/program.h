@@ -51,8 +51,9 @@ class Cli : public ::testing::Test {
   Outcome icloth(const std::string& arguments, const std::string& environment = "") const {
     const fs::path out = base_ / "out", err = base_ / "err";
     const std::string command = "cd '" + folder_.string() + "' && { env " + environment +
-                                " timeout 100 '" + ICLOTH_PROGRAM "' " + arguments + " ; } > '" +
-                                out.string() + "' 2> '" + err.string() + "' < /dev/null";
+                                " timeout " ICLOTH_PROGRAM_SECONDS " '" ICLOTH_PROGRAM "' " +
+                                arguments + " ; } > '" + out.string() + "' 2> '" + err.string() +
+                                "' < /dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }
