@@ -44,6 +44,7 @@ inline unsigned atomicInc(unsigned* at, unsigned most) {
   return ::cuda_on_host::atomic_increment(at, most);
 }
 inline double __dmul_rn(double a, double b) { return a * b; }
+inline int __ffs(int bits) { return __builtin_ffs(bits); }
 
 // ---- errors -------------------------------------------------------------------------------------
 
