@@ -163,18 +163,23 @@ def tank():
 
 
 def andy_shirt():
+    """Short sleeves: below those of the jacket, long ones would be pinched in the elbows."""
     size = dict(neck=7.0, shoulder=(16.2, -2.5), chest=20.5, armhole=19, hem=21.5, length=45,
                 front_neck=7, back_neck=2)
     return shirt('andy_shirt', size, BOY_SHOULDER, 114.5, 14, -17, 17,
-                 sleeve=(14.5, 30, 11.5), arm=(8.5, 5.3, 4))
+                 sleeve=(14.5, 13, 13.4), arm=(8.5, 5.3))
 
 
 def andy_trousers():
-    # Wide at the hips and in the legs, with a low crotch: he kicks as high as his hips.
-    size = dict(crotch=24, hip_at=14, knee_at=45, length=73,
-                front=dict(waist=16.7, hip=20.5, fork=5, knee=20, ankle=17, slant=0, **{'raise': 0}),
-                back=dict(waist=17.7, hip=22, fork=9, knee=22, ankle=19, slant=1.5, **{'raise': 1.5}))
-    return make_trousers('andy_trousers', size, 56, 12, -14)
+    # He kicks and stands in deep stances. The waist is narrower than the hips and holds the crotch
+    # close to his own: cloth that sinks is stretched between the thighs. Knees are wide, since they
+    # pinch the cloth behind them, and the seat is long, since it bends.
+    size = dict(crotch=24.5, hip_at=14, knee_at=48, length=77,
+                front=dict(waist=15.2, hip=21.5, fork=6.5, knee=23, ankle=17, slant=0,
+                           **{'raise': 0}),
+                back=dict(waist=15.8, hip=22, fork=11, knee=25, ankle=19, slant=2.5,
+                          **{'raise': 3.5}))
+    return make_trousers('andy_trousers', size, 59.5, 12, -14)
 
 
 def andy_jacket():
