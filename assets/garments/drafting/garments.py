@@ -175,9 +175,9 @@ def andy_trousers():
     # close to his own: cloth that sinks is stretched between the thighs. Knees are wide, since they
     # pinch the cloth behind them, and the seat is long, since it bends.
     size = dict(crotch=24.5, hip_at=14, knee_at=48, length=77,
-                front=dict(waist=15.2, hip=21.5, fork=6.5, knee=23, ankle=17, slant=0,
+                front=dict(waist=15.2, hip=21, fork=6.5, knee=23, ankle=17, slant=0,
                            **{'raise': 0}),
-                back=dict(waist=15.8, hip=22, fork=11, knee=25, ankle=19, slant=2.5,
+                back=dict(waist=15.8, hip=23, fork=11, knee=25, ankle=19, slant=2.5,
                           **{'raise': 3.5}))
     return make_trousers('andy_trousers', size, 59.5, 12, -14)
 
