@@ -136,6 +136,10 @@ void Commands::add_run() {
   command->add_option("--checkpoint-every", run.checkpoint_every, "at each K-th step")
       ->check(CLI::Range(1L, 1000000L))
       ->capture_default_str();
+  command
+      ->add_option("--check-every", run.check_every,
+                   "test each K-th state for faces that intersect, exactly")
+      ->check(CLI::Range(1L, 1000000L));
   command->add_option("--garments", run.garments_file,
                       "strain of the garments, and how far they slide, FILE.csv");
   command->add_option("--resume", run.resume_file, "go on from this checkpoint")

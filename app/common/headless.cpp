@@ -113,6 +113,17 @@ void write_checkpoint(const HeadlessJob& job, const Simulator& simulator,
   save_checkpoint(checkpoint, job.checkpoint_file);
 }
 
+/// Tests a state on the way exactly, and says where its faces intersect.
+void check_state(const Simulator& simulator, Progress& progress, HeadlessResult& result) {
+  const std::size_t pairs = count_penetrations(simulator);
+  ++result.states_checked;
+  if (pairs == 0) return;
+  ++result.states_penetrating;
+  progress.finish();
+  std::fprintf(stderr, "icloth: after step %lld at %g s %zu pairs of faces intersect\n",
+               static_cast<long long>(simulator.step_index()), simulator.time(), pairs);
+}
+
 }  // namespace
 
 void print_notes(const SceneOrigin& origin) { print_notes(origin.notes); }
@@ -211,6 +222,8 @@ HeadlessResult run_headless(const HeadlessJob& job) {
     if (!job.checkpoint_file.empty() && !stops && (last || (step + 1) % job.checkpoint_every == 0))
       write_checkpoint(job, *simulator, start_hash);
     if (stops) break;
+    if (job.check_every > 0 && !last && (step + 1) % job.check_every == 0)
+      check_state(*simulator, progress, result);
     progress.update(step + 1);
   }
   progress.finish();

@@ -32,6 +32,9 @@ struct HeadlessJob {
   std::string checkpoint_file;  ///< written every so many steps and at the end; empty: not
   long checkpoint_every = 100;
 
+  /// Each such step the state is tested for faces that intersect, exactly; 0: only at the end.
+  long check_every = 0;
+
   /// Called with the start state (null report) and after every step; `last`: no step follows.
   std::function<void(const Simulator&, const StepReport*, bool last)> watch;
 };
@@ -40,6 +43,8 @@ struct HeadlessResult {
   RunStatistics statistics;
   std::vector<StepReport> refused;            ///< steps that were not accepted, with their pairs
   std::size_t penetrations = 0;               ///< pairs of faces that intersect in the final state
+  std::size_t states_checked = 0;             ///< on the way, without the final state
+  std::size_t states_penetrating = 0;         ///< of these, with faces that intersect
   std::uint64_t state_hash = 0;               ///< of the final state
   bool start_refused = false;                 ///< the start state intersects; nothing was simulated
   std::vector<OffendingPair> start_contacts;  ///< of layers that are too close for the build
@@ -47,7 +52,8 @@ struct HeadlessResult {
   int start_exit_code = 0;  ///< of a refused start: 1, or 2 where only the mesh is at fault
 
   bool clean() const {
-    return refused.empty() && penetrations == 0 && !start_refused && !interrupted;
+    return refused.empty() && penetrations == 0 && states_penetrating == 0 && !start_refused &&
+           !interrupted;
   }
 };
 

@@ -133,6 +133,9 @@ void print_end(const RunOptions& options, Build build, std::int64_t steps,
                const HeadlessResult& result) {
   if (!options.simulation.quiet)
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
+  if (options.check_every > 0 && !options.simulation.quiet)
+    std::printf("%-22s %12zu   of them with penetrations: %zu\n", "states checked",
+                result.states_checked, result.states_penetrating);
   if (options.profile) print_profile(result.statistics);
   if (result.interrupted)
     std::fprintf(stderr, "icloth: ended by %s after %lld steps; what was asked for is written\n",
@@ -155,6 +158,7 @@ int run_run(const RunOptions& options) {
   if (!options.record_file.empty() || !options.checkpoint_file.empty()) job.record = &record;
   job.checkpoint_file = options.checkpoint_file;
   job.checkpoint_every = options.checkpoint_every;
+  job.check_every = options.check_every;
   std::optional<Checkpoint> resumed;
   if (!options.resume_file.empty()) {
     resumed = load_checkpoint(options.resume_file);

@@ -19,6 +19,7 @@ struct RunOptions {
   std::string record_file;           ///< the run is saved here; empty: not
   std::string checkpoint_file;       ///< the state is saved here; empty: not
   long checkpoint_every = 100;       ///< steps
+  long check_every = 0;              ///< steps between exact tests of the state; 0: the last only
   std::string resume_file;           ///< checkpoint to go on from; empty: from the start
   std::string on_failure = "stop";   ///< stop or continue
   bool profile = false;              ///< print the time of every primitive

@@ -391,6 +391,27 @@ TEST_F(Cli, PenetrationsLeftAreAFailure) {
   EXPECT_EQ(run.code, 1) << run.out << run.err;
 }
 
+TEST_F(Cli, StatesOnTheWayAreCheckedWhereAsked) {
+  write("drop.json", kDrop);
+  const Outcome clean = icloth("run drop.json --device cpu --steps 7 --check-every 3");
+  EXPECT_EQ(clean.code, 0) << clean.err;
+  EXPECT_TRUE(contains(clean.out, " 2   of them with penetrations: 0\n")) << clean.out;
+
+  // A ball that is moved through a sheet of pins intersects it on the way and not at the end.
+  write("through.json", R"({"name": "Through", "time_step": 0.01, "duration": 0.6,
+    "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
+                  "pins": [ { "box": [ [-1, -1, -1], [1, 1, 1] ] } ] } ],
+    "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.03, "triangles": 100 } },
+                     "motion": [ { "time": 0, "translate": [0.013, 0.017, -0.2] },
+                                 { "time": 0.5, "translate": [0.013, 0.017, 0.2] } ] } ] })");
+  const Outcome through =
+      icloth("run through.json --device cpu --on-failure continue --check-every 1");
+  EXPECT_EQ(through.code, 1);
+  EXPECT_TRUE(contains(through.err, "icloth: after step ")) << through.err;
+  EXPECT_TRUE(contains(through.err, " pairs of faces intersect\n")) << through.err;
+  expect_bad_input("run drop.json --check-every 0", "--check-every");
+}
+
 TEST_F(Cli, InfoNamesTheBuilds) {
   const Outcome info = icloth("info");
   EXPECT_EQ(info.code, 0) << info.err;
