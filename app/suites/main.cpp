@@ -11,8 +11,9 @@ namespace {
 /// The options of the suites, of which some belong to a few suites only.
 void add_options(CLI::App& app, BenchOptions& bench) {
   app.add_option("SUITE", bench.suite,
-                 "quick, paper, scaling, accuracy, stability, validation or solver")
+                 "quick, paper, scaling, accuracy, stability, validation, solver or compare")
       ->capture_default_str();
+  app.add_option("OTHER", bench.other, "compare: another icloth program");
   app.add_option("--out", bench.out, "folder of report.html, results.json and tables");
   add_device_option(app, bench.device);
   app.add_option("--threads", bench.threads, "threads of the CPU solver")
@@ -20,10 +21,15 @@ void add_options(CLI::App& app, BenchOptions& bench) {
   app.add_flag("--quiet", bench.quiet, "no progress line");
 
   // These options are for some of the suites only.
-  app.add_option(
-      "--case", bench.only,
-      "accuracy, paper, scaling, stability, validation, solver: only cases whose name holds this");
-  app.add_option("--scale", bench.scale, "paper, scaling: share of the number of triangles")
+  app.add_option("--case", bench.only,
+                 "accuracy, compare, paper, scaling, stability, validation, solver: only cases "
+                 "whose name holds "
+                 "this");
+  app.add_option("--repeat", bench.repeat, "compare: turns of each program")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--scale", bench.scale,
+                 "compare, paper, scaling: share of the number of triangles")
       ->check(CLI::Range(1e-3, 10.0))
       ->capture_default_str();
   app.add_flag("--continue", bench.go_on,

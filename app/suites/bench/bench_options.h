@@ -7,6 +7,8 @@ namespace icloth {
 
 struct BenchOptions {
   std::string suite = "quick";
+  std::string other;   ///< compare: path of another icloth program
+  int repeat = 5;      ///< compare: turns of each program
   std::string out;     ///< folder of results.json; empty: none is written
   std::string device;  ///< cpu, cuda or cuda:N; empty: cpu, then cuda where it is usable
   int threads = 0;     ///< of the CPU builds; 0: all

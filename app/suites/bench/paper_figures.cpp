@@ -26,6 +26,27 @@ std::vector<double> over_stretches(const PaperResults& results, const PaperScene
   return values;
 }
 
+/// The rows of two ways on one stretch, and the number of steps that both have made.
+struct PairedRows {
+  const Stretch& stretch;
+  const Json &a, &b;
+  std::size_t count;
+};
+
+/// The stretches of a scene that two ways have been measured on.
+std::vector<PairedRows> paired_rows(const PaperResults& results, const PaperScene& scene,
+                                    const std::string& mode_a, const std::string& mode_b) {
+  std::vector<PairedRows> pairs;
+  for (const Stretch& stretch : scene.stretches) {
+    const Json* a = results.find(scene, stretch, mode_a);
+    const Json* b = results.find(scene, stretch, mode_b);
+    if (!a || !b) continue;
+    const Json &rows_a = a->at("rows"), &rows_b = b->at("rows");
+    pairs.push_back({stretch, rows_a, rows_b, std::min(rows_of(rows_a), rows_of(rows_b))});
+  }
+  return pairs;
+}
+
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
@@ -191,14 +212,13 @@ void show_incremental(const PaperResults& results, const PaperScene& scene, Repo
 
   // Both ways take the same steps, and must end each of them in the same bits.
   std::map<std::string, double> full_tests, incremental_tests;
-  for (const Stretch& stretch : scene.stretches) {
-    const Json* full = results.find(scene, stretch, "counted full");
-    const Json* incremental = results.find(scene, stretch, "counted incremental");
-    if (!full || !incremental) continue;
-    const Json &a = full->at("rows"), &b = incremental->at("rows");
+  for (const PairedRows& pair :
+       paired_rows(results, scene, "counted full", "counted incremental")) {
+    const Stretch& stretch = pair.stretch;
+    const Json &a = pair.a, &b = pair.b;
 
     // A row is one step.
-    for (std::size_t k = 0; k < std::min(rows_of(a), rows_of(b)); ++k) {
+    for (std::size_t k = 0; k < pair.count; ++k) {
       const auto value = [k](const Json& rows, const char* name) {
         return column_of(rows, name)[k];
       };
@@ -251,20 +271,18 @@ void show_collision_handling(const PaperResults& results, const PaperScene& scen
             .series = {}};
 
   // The mean over the steps that both ways made from the beginning of each stretch.
-  for (const Stretch& stretch : scene.stretches) {
-    const Json* own = results.find(scene, stretch, kOwnMode);
-    const Json* pscc = results.find(scene, stretch, "pscc");
-    if (!own || !pscc) continue;
-    const Json &a = own->at("rows"), &b = pscc->at("rows");
-    const std::size_t count = rows_of(b);
+  for (const PairedRows& pair : paired_rows(results, scene, kOwnMode, "pscc")) {
+    const Stretch& stretch = pair.stretch;
+    const Json &a = pair.a, &b = pair.b;
+    const std::size_t count = pair.count;
     const auto n = static_cast<double>(count);
     const auto mean = [&](const Json& rows, const char* name) {
       return format_number(sum_of(rows, name, count) / n);
     };
     table.add({std::to_string(stretch.first) + "–" +
                    std::to_string(stretch.first + static_cast<long>(count)),
-               format_number(collision_ms(a, count) / n), format_number(collision_ms(b) / n),
-               format_number(collision_ms(b) / collision_ms(a, count), 3), mean(a, "rounds"),
+               format_number(collision_ms(a, count) / n), format_number(collision_ms(b, count) / n),
+               format_number(collision_ms(b, count) / collision_ms(a, count), 3), mean(a, "rounds"),
                mean(b, "rounds"), mean(a, "zone_iterations"), mean(b, "zone_iterations")});
 
     // The time of every step, of broad phase, CCD and zones together.
@@ -335,18 +353,14 @@ void show_stages(const PaperResults& results, const PaperScene& scene, Report& r
   // Sums over the steps that both ways made, and the largest gain of one step.
   std::vector<double> ours(std::size(kStages), 0), theirs(std::size(kStages), 0);
   double steps = 0, peak = 0;
-  for (const Stretch& stretch : scene.stretches) {
-    const Json* own = results.find(scene, stretch, kOwnMode);
-    const Json* pscc = results.find(scene, stretch, "pscc");
-    if (!own || !pscc) continue;
-    const Json &a = own->at("rows"), &b = pscc->at("rows");
-    const std::size_t count = rows_of(b);
-    steps += static_cast<double>(count);
+  for (const PairedRows& pair : paired_rows(results, scene, kOwnMode, "pscc")) {
+    const Json &a = pair.a, &b = pair.b;
+    steps += static_cast<double>(pair.count);
     for (std::size_t k = 0; k < std::size(kStages); ++k) {
-      ours[k] += sum_of(a, kStages[k].first, count);
-      theirs[k] += sum_of(b, kStages[k].first, count);
+      ours[k] += sum_of(a, kStages[k].first, pair.count);
+      theirs[k] += sum_of(b, kStages[k].first, pair.count);
     }
-    for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t k = 0; k < pair.count; ++k)
       peak = std::max(peak, column_of(b, "ms_total")[k] / column_of(a, "ms_total")[k]);
   }
   if (steps == 0) return;
