@@ -177,7 +177,8 @@ Snapshot weld_memory(const Snapshot& state, const World& before, const WeldedSce
       gap = std::min(gap, state.start_gap[v]);
     }
   }
-  s.trusted.clear();
+  s.trusted_start.clear();
+  s.trusted_end.clear();
   s.trusted_complete = false;
 
   // Merged vertices are let go from a body once.

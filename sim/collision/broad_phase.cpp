@@ -8,6 +8,8 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
+constexpr Index kFewLeavers = 8;  ///< at most this part of the cloth vertices
+
 /// The motion of the vertices in this step: to x1, or to where velocity and gravity are expected to
 /// take them.
 struct Paths {
@@ -17,15 +19,21 @@ struct Paths {
   Vec3r fall;  ///< displacement by gravity in this step [m]
   Index cloth_vertices;
 
-  ICLOTH_HD Box swept(Index i, Real pad) const {
-    Vec3r end = to[i];
-    if (predicted) {
-      end = from[i] + dt * to[i];
-      if (i < cloth_vertices) end += fall;
-    }
-    return swept_box(from[i], end, pad);
+  ICLOTH_HD Vec3r end(Index i) const {
+    if (!predicted) return to[i];
+    const Vec3r moved = from[i] + dt * to[i];
+    return i < cloth_vertices ? moved + fall : moved;
   }
+  ICLOTH_HD Box start_box(Index i, Real pad) const { return swept_box(from[i], from[i], pad); }
+  ICLOTH_HD Box end_box(Index i, Real pad) const { return swept_box(end(i), end(i), pad); }
 };
+
+ICLOTH_HD bool contains(const Box& outer, const Box& inner) {
+  bool inside = true;
+  for (int k = 0; k < 3; ++k)
+    inside = inside && inner.lo[k] >= outer.lo[k] && inner.hi[k] <= outer.hi[k];
+  return inside;
+}
 
 Paths make_paths(const SubstepContext& step, bool predicted) {
   const Array<Vec3r>& to = predicted ? step.state.v : step.state.x1;
@@ -37,16 +45,19 @@ Paths make_paths(const SubstepContext& step, bool predicted) {
           .cloth_vertices = step.mesh.cloth_vertices};
 }
 
-/// Makes the trusted region of a vertex, the padded box around its path.
+/// Makes the trusted regions of a vertex, padded boxes around both ends of its path.
 struct VertexBoxes {
   Paths paths;
-  View<Box> box;
+  View<Box> start, end;
   Real pad;
 
-  ICLOTH_HD void operator()(Index i) const { box[i] = paths.swept(i, pad); }
+  ICLOTH_HD void operator()(Index i) const {
+    start[i] = paths.start_box(i, pad);
+    end[i] = paths.end_box(i, pad);
+  }
 };
 
-/// The box of a face is the hull of the boxes of its vertices.
+/// The boxes of a face are the hulls of the boxes of its vertices.
 struct FaceBoxes {
   View<const Int3> face;
   View<const Box> vertex;
@@ -60,7 +71,7 @@ struct FaceBoxes {
   }
 };
 
-/// The box of an edge is the hull of the boxes of its vertices.
+/// The boxes of an edge are the hulls of the boxes of its vertices.
 struct EdgeBoxes {
   View<const Int2> edge;
   View<const Box> vertex;
@@ -73,42 +84,96 @@ struct EdgeBoxes {
   }
 };
 
-/// Returns 1 where a vertex leaves its trusted region, with `margin` around its path.
-struct Outside {
+/// How the path of a vertex, with `margin` around it, is to its trusted regions.
+struct Whereabouts {
   Paths paths;
-  View<const Box> box;
+  View<const Box> start, end;
   Real margin;
 
-  ICLOTH_HD Index operator()(Index i) const {
-    const Box path = paths.swept(i, margin);
-    bool contained = true;
-    for (int k = 0; k < 3; ++k)
-      contained = contained && path.lo[k] >= box[i].lo[k] && path.hi[k] <= box[i].hi[k];
-    return contained ? 0 : 1;
+  ICLOTH_HD bool fresh(Index i) const {
+    return contains(start[i], paths.start_box(i, margin)) && ends_inside(i);
+  }
+  ICLOTH_HD bool still(Index i) const {
+    return contains(end[i], paths.start_box(i, margin)) && ends_inside(i);
+  }
+  ICLOTH_HD bool ends_inside(Index i) const { return contains(end[i], paths.end_box(i, margin)); }
+  /// 1 where the path is not from the first box to the second, and 2³² where it is not in the
+  /// second: sums of both numbers of vertices fit into one.
+  ICLOTH_HD std::int64_t operator()(Index i) const {
+    return (fresh(i) ? 0 : std::int64_t{1}) + (still(i) ? 0 : std::int64_t{1} << 32);
+  }
+};
+
+/// Marks the cloth vertices that left their boxes, and makes new ones for them. The boxes of the
+/// others stay; where paths stay in the second boxes, those become the first ones too, so that all
+/// paths lead from first boxes to second ones.
+struct ReplaceBoxes {
+  Whereabouts where;
+  View<Box> start, end;
+  View<std::uint8_t> left;
+  Index cloth_vertices;
+  bool fresh;  ///< the others go from the first box to the second
+  Real pad;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const bool stays = fresh ? where.fresh(i) : where.still(i);
+    if (i < cloth_vertices) left[i] = stays ? 0 : 1;
+    if (stays) {
+      if (!fresh) start[i] = end[i];
+    } else {
+      start[i] = where.paths.start_box(i, pad);
+      end[i] = where.paths.end_box(i, pad);
+    }
+  }
+};
+
+/// Counts the bodies' vertices that left their boxes.
+struct BodiesLeft {
+  Whereabouts where;
+  Index first;
+  bool fresh;
+  ICLOTH_HD Index operator()(Index k) const {
+    return (fresh ? where.fresh(first + k) : where.still(first + k)) ? 0 : 1;
+  }
+};
+
+/// Picks the pairs of vertices that stayed in their boxes and that may still meet.
+template <class Dirty>
+struct StillCandidates {
+  View<const Pair> pair;
+  Dirty left;
+  MovingBoxes first, second;
+  ICLOTH_HD bool operator()(Index i) const {
+    const Pair p = pair[i];
+    return !left(p) && overlap(first[p.a], second[p.b]) && !stay_apart(first.at(p.a), second, p.b);
   }
 };
 
 }  // namespace
 
 void BroadPhase::make_boxes(SubstepContext& step, bool predicted, Real pad) {
-  Array<Box>& trusted = step.state.trusted;
-  trusted.resize(step.mesh.vertices);
+  Array<Box>&start = step.state.trusted_start, &end = step.state.trusted_end;
+  start.resize(step.mesh.vertices);
+  end.resize(step.mesh.vertices);
   for_each("broad_phase.vertex_boxes", step.mesh.vertices,
-           VertexBoxes{make_paths(step, predicted), trusted.view(), pad});
+           VertexBoxes{make_paths(step, predicted), start.view(), end.view(), pad});
   update_hulls(step);
 }
 
 void BroadPhase::update_hulls(SubstepContext& step) {
   const Topology& mesh = step.mesh;
 
-  // Boxes of faces and edges are unions of those of their vertices.
-  const View<const Box> trusted = std::as_const(step.state.trusted).view();
-  face_box_.resize(mesh.faces);
-  edge_box_.resize(mesh.edges);
-  for_each("broad_phase.face_boxes", mesh.faces,
-           FaceBoxes{mesh.face.view(), trusted, face_box_.view()});
-  for_each("broad_phase.edge_boxes", mesh.edges,
-           EdgeBoxes{mesh.edge.view(), trusted, edge_box_.view()});
+  // Boxes of faces and edges are unions of those of their vertices, at each end of the paths.
+  const auto unite = [&](const Array<Box>& vertex, Array<Box>& face, Array<Box>& edge) {
+    face.resize(mesh.faces);
+    edge.resize(mesh.edges);
+    for_each("broad_phase.face_boxes", mesh.faces,
+             FaceBoxes{mesh.face.view(), vertex.view(), face.view()});
+    for_each("broad_phase.edge_boxes", mesh.edges,
+             EdgeBoxes{mesh.edge.view(), vertex.view(), edge.view()});
+  };
+  unite(step.state.trusted_start, face_start_, edge_start_);
+  unite(step.state.trusted_end, face_end_, edge_end_);
 
   // The trees keep the order of their leaves for a few refits, after which sorting anew pays.
   if (step.parameters.broad_phase.method == BroadPhaseMethod::tree) {
@@ -127,32 +192,82 @@ Real BroadPhase::slack(const SubstepContext& step) {
 }
 
 void BroadPhase::find_candidates(SubstepContext& step, View<const std::uint8_t> dirty) {
-  const bool all = dirty.size() == 0;
-  candidates_.clear();
+  search(step, dirty, candidates_);
+
+  // Only a list of all pairs can serve later rounds and steps.
+  step.state.trusted_complete = dirty.size() == 0;
+}
+
+void BroadPhase::search(SubstepContext& step, View<const std::uint8_t> dirty, Candidates& out) {
+  out.clear();
   tree_.count_tests = step.parameters.broad_phase.count_tests;
 
   // Both methods can find all pairs, or those with a dirty vertex alone.
   const auto find = [&](auto& finder) {
-    if (all)
-      finder.find(step.mesh, boxes(step.state), candidates_);
+    if (dirty.size() == 0)
+      finder.find(step.mesh, boxes(step.state), out);
     else
-      finder.find_dirty(step.mesh, boxes(step.state), dirty, candidates_);
+      finder.find_dirty(step.mesh, boxes(step.state), dirty, out);
   };
   if (step.parameters.broad_phase.method == BroadPhaseMethod::tree)
     find(tree_);
   else
     find(hash_);
-
-  // Only a list of all pairs can serve later rounds and steps.
-  step.state.trusted_complete = all;
-  if (step.parameters.broad_phase.count_tests) step.report.box_tests += candidates_.box_tests;
+  if (step.parameters.broad_phase.count_tests) step.report.box_tests += out.box_tests;
 }
 
-bool BroadPhase::covers(SubstepContext& step, bool predicted, Real margin) {
-  const Array<Box>& trusted = step.state.trusted;
-  return !trusted.empty() &&
-         reduce("broad_phase.outside", step.mesh.vertices, Index{0},
-                Outside{make_paths(step, predicted), trusted.view(), margin}, Sum{}) == 0;
+BroadPhase::Leavers BroadPhase::leavers(SubstepContext& step, bool predicted, Real margin) {
+  const Array<Box>&start = step.state.trusted_start, &end = step.state.trusted_end;
+  if (start.size() != step.mesh.vertices || end.size() != step.mesh.vertices)
+    return {step.mesh.vertices, step.mesh.vertices};
+  const std::int64_t both =
+      reduce("broad_phase.outside", step.mesh.vertices, std::int64_t{0},
+             Whereabouts{make_paths(step, predicted), start.view(), end.view(), margin}, Sum{});
+  return {static_cast<Index>(both & 0x7FFFFFFF), static_cast<Index>(both >> 32)};
+}
+
+bool BroadPhase::replace_leavers(SubstepContext& step, const Leavers& found) {
+  State& state = step.state;
+  const Topology& mesh = step.mesh;
+  if (!current_ || !state.trusted_complete) return false;
+
+  // A search for many vertices is a search for all of them.
+  const bool fresh = found.fresh <= found.still;
+  if ((fresh ? found.fresh : found.still) > mesh.cloth_vertices / kFewLeavers) return false;
+  const Whereabouts where{make_paths(step, false), std::as_const(state.trusted_start).view(),
+                          std::as_const(state.trusted_end).view(), Real(0)};
+
+  // The paths of bodies are known in advance, so that their vertices leave when a step is cut.
+  if (reduce("broad_phase.outside", mesh.vertices - mesh.cloth_vertices, Index{0},
+             BodiesLeft{where, mesh.cloth_vertices, fresh}, Sum{}) > 0)
+    return false;
+  left_.resize(mesh.cloth_vertices);
+  for_each("broad_phase.vertex_boxes", mesh.vertices,
+           ReplaceBoxes{where, state.trusted_start.view(), state.trusted_end.view(), left_.view(),
+                        mesh.cloth_vertices, fresh, slack(step)});
+  update_hulls(step);
+
+  // Pairs of the others stay, and the vertices that left find theirs anew.
+  const ElementBoxes box = boxes(state);
+  const DirtyVertices vertex{left_.view()};
+  const auto keep = [&](Array<Pair>& list, const auto& picks) {
+    kept_pairs_.resize(compact("broad_phase.keep", list.size(), picks, kept_));
+    for_each("broad_phase.keep", kept_pairs_.size(),
+             PickPairs{list.view(), kept_.view(), kept_pairs_.view()});
+    swap(list, kept_pairs_);
+  };
+  keep(candidates_.vertex_faces,
+       StillCandidates<DirtyVertexFace>{candidates_.vertex_faces.view(),
+                                        {vertex, {vertex, mesh.face.view()}},
+                                        box.vertex,
+                                        box.face});
+  keep(candidates_.edge_edges,
+       StillCandidates<DirtyEdgeEdge>{
+           candidates_.edge_edges.view(), {{vertex, mesh.edge.view()}}, box.edge, box.edge});
+  search(step, left_.view(), more_);
+  append_pairs(more_.vertex_faces, candidates_.vertex_faces);
+  append_pairs(more_.edge_edges, candidates_.edge_edges);
+  return true;
 }
 
 void BroadPhase::prepare(SubstepContext& step) {
@@ -170,7 +285,9 @@ void BroadPhase::prepare(SubstepContext& step) {
 }
 
 void BroadPhase::cover_candidate(SubstepContext& step) {
-  if (current_ && step.state.trusted_complete && covers(step, false, Real(0))) return;
+  const Leavers found = leavers(step, false, Real(0));
+  if (current_ && step.state.trusted_complete && found.none()) return;
+  if (replace_leavers(step, found)) return;
   make_boxes(step, false, slack(step));
   find_candidates(step, {});
 }

@@ -1,19 +1,19 @@
 // The input and the output of the finders of candidate pairs.
 #pragma once
 
-#include "kernels/bvh.h"
 #include "kernels/parallel/parallel.h"
+#include "sim/collision/moving_boxes.h"
 #include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {
 
 /// Boxes of the elements, those of cloths first.
 struct ElementBoxes {
-  View<const Box> vertex, face, edge;
+  MovingBoxes vertex, face, edge;
 };
 
-/// Pairs that share no vertex and of which at least one element is of a cloth; each is listed once,
-/// in any order.
+/// Pairs that share no vertex, that do not stay apart, and of which at least one element is of a
+/// cloth; each is listed once, in any order.
 struct Candidates {
   Array<Pair> vertex_faces;    ///< (vertex, face)
   Array<Pair> edge_edges;      ///< (edge, edge), the smaller edge first
@@ -64,6 +64,25 @@ struct DirtyEdges {
   DirtyVertices dirty;
   View<const Int2> edge;
   ICLOTH_HD bool operator()(Index e) const { return dirty(edge[e].v[0]) || dirty(edge[e].v[1]); }
+};
+
+/// Tells which pairs have a dirty vertex.
+struct DirtyVertexFace {
+  DirtyVertices vertex;
+  DirtyFaces face;
+  ICLOTH_HD bool operator()(Pair p) const { return vertex(p.a) || face(p.b); }
+};
+struct DirtyEdgeEdge {
+  DirtyEdges edge;
+  ICLOTH_HD bool operator()(Pair p) const { return edge(p.a) || edge(p.b); }
+};
+
+/// Copies the picked pairs.
+struct PickPairs {
+  View<const Pair> from;
+  View<const Index> picked;
+  View<Pair> to;
+  ICLOTH_HD void operator()(Index i) const { to[i] = from[picked[i]]; }
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -35,8 +35,8 @@ struct CellRange {
 
 /// The boxes of elements of two kinds, the second kind numbered on from the first.
 struct TwoKinds {
-  View<const Box> first, second;
-  ICLOTH_HD const Box& operator[](Index i) const {
+  MovingBoxes first, second;
+  ICLOTH_HD Box operator[](Index i) const {
     return i < first.size() ? first[i] : second[i - first.size()];
   }
   ICLOTH_HD Index size() const { return first.size() + second.size(); }
@@ -69,7 +69,7 @@ struct Extent {
 struct ExtentOf {
   TwoKinds box;
   ICLOTH_HD Extent operator()(Index i) const {
-    const Box& b = box[i];
+    const Box b = box[i];
     Extent e{b, 0};
     for (int k = 0; k < 3; ++k) e.length += static_cast<double>(b.hi[k] - b.lo[k]) / 3;
     return e;
@@ -131,12 +131,6 @@ struct SetEnd {
   ICLOTH_HD void operator()(Index) const { list[list.size() - 1] = value; }
 };
 
-ICLOTH_HD bool overlap(const Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k)
-    if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return false;
-  return true;
-}
-
 /// The entries of one cell, a range of ascending element numbers.
 struct CellView {
   View<const Index> element;
@@ -178,7 +172,8 @@ struct EdgePairs {
     b = static_cast<Index>(row + 1 + t - before(row));
   }
   ICLOTH_HD bool allowed(Index a, Index b) const {
-    return a < cloth && !share_vertex(edge[a], edge[b]);
+    return a < cloth && !share_vertex(edge[a], edge[b]) &&
+           !stay_apart(box.first.at(a), box.first, b);
   }
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b}; }
 };
@@ -204,7 +199,8 @@ struct VertexFacePairs {
   ICLOTH_HD bool allowed(Index a, Index b) const {
     if (a >= vertices || b < vertices) return false;
     const Index f = b - vertices;
-    return (a < cloth_vertices || f < cloth_faces) && !has_vertex(face[f], a);
+    return (a < cloth_vertices || f < cloth_faces) && !has_vertex(face[f], a) &&
+           !stay_apart(box.first.at(a), box.second, f);
   }
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b - vertices}; }
 };
@@ -252,7 +248,7 @@ struct TestItem {
   /// token), so that it is found once.
   template <class Emit>
   ICLOTH_HD void test(Index a, Index b, std::uint64_t here, Emit& emit) const {
-    const Box &p = pairs.box[a], &q = pairs.box[b];
+    const Box p = pairs.box[a], q = pairs.box[b];
     if (!overlap(p, q)) return;
     std::uint64_t token[3];
     for (int k = 0; k < 3; ++k)
@@ -271,7 +267,7 @@ struct TestLarge {
 
   template <class Emit>
   ICLOTH_HD void operator()(Index other, Emit& emit) const {
-    const Box& box = pairs.box[other];
+    const Box box = pairs.box[other];
     const bool other_large = cell_count(cells_of(grid, box)) == 0;
     for (Index k = 0; k < large.size(); ++k) {
       const Index l = large[k];
@@ -288,23 +284,6 @@ struct IsDirtyPair {
   View<const Pair> pair;
   Dirty dirty;
   ICLOTH_HD bool operator()(Index i) const { return dirty(pair[i]); }
-};
-struct DirtyVertexFace {
-  DirtyVertices vertex;
-  DirtyFaces face;
-  ICLOTH_HD bool operator()(Pair p) const { return vertex(p.a) || face(p.b); }
-};
-struct DirtyEdgeEdge {
-  DirtyEdges edge;
-  ICLOTH_HD bool operator()(Pair p) const { return edge(p.a) || edge(p.b); }
-};
-
-/// Copies the picked pairs.
-struct PickPairs {
-  View<const Pair> from;
-  View<const Index> picked;
-  View<Pair> to;
-  ICLOTH_HD void operator()(Index i) const { to[i] = from[picked[i]]; }
 };
 
 /// Chooses the cells from the bounds and the mean size of the boxes.

@@ -14,10 +14,9 @@ namespace icloth::ICLOTH_BUILD {
 
 class HashPairs {
  public:
-  /// Finds all pairs whose boxes overlap.
+  /// Finds all pairs whose boxes overlap and that do not stay apart.
   void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
-  /// Finds the pairs whose boxes overlap and that have a dirty vertex, by finding all pairs and
-  /// dropping the others.
+  /// Finds those of them that have a dirty vertex, by finding all pairs and dropping the others.
   void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
                   Candidates& out);
 

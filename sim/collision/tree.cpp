@@ -18,21 +18,21 @@ struct Items {
 };
 
 struct BoxAt {
-  View<const Box> box;
+  MovingBoxes box;
   Items items;
   ICLOTH_HD Box operator()(Index i) const { return box[items[i]]; }
 };
 
 /// The Morton code of the centre of an item's box, within the bounds of all items.
 struct MortonCodes {
-  View<const Box> box;
+  MovingBoxes box;
   Items items;
   View<std::uint64_t> code;
   View<Index> item;
   Box bounds;
 
   ICLOTH_HD void operator()(Index i) const {
-    const Box& b = box[items[i]];
+    const Box b = box[items[i]];
     float p[3];
     for (int k = 0; k < 3; ++k) {
       const float extent = bounds.hi[k] - bounds.lo[k];
@@ -45,7 +45,7 @@ struct MortonCodes {
 
 /// Fits the lowest level to the boxes of the items; missing children get empty boxes.
 struct FitLeaves {
-  View<const Box> box;
+  MovingBoxes box;
   View<const Index> item;
   View<TreeNode> node;
 
@@ -84,16 +84,16 @@ TreeView Tree::view() const {
   return t;
 }
 
-void Tree::build(View<const Box> boxes, Index first) {
+void Tree::build(const MovingBoxes& boxes, Index first) {
   sort(boxes, Items{{}, first}, boxes.size() - first);
 }
 
-void Tree::build(View<const Box> boxes, View<const Index> elements) {
+void Tree::build(const MovingBoxes& boxes, View<const Index> elements) {
   sort(boxes, Items{elements, 0}, elements.size());
 }
 
 template <class Items>
-void Tree::sort(View<const Box> boxes, const Items& items, Index n) {
+void Tree::sort(const MovingBoxes& boxes, const Items& items, Index n) {
   items_.resize(n);
   levels_ = 0;
   if (n == 0) return;
@@ -118,7 +118,7 @@ void Tree::sort(View<const Box> boxes, const Items& items, Index n) {
   refit(boxes);
 }
 
-void Tree::refit(View<const Box> boxes) {
+void Tree::refit(const MovingBoxes& boxes) {
   if (levels_ == 0) return;
   for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, items_.view(), nodes_.view()});
   for (int l = 1; l < levels_; ++l)

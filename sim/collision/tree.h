@@ -1,8 +1,8 @@
-// A bounding volume tree over boxes of elements (kernels/bvh.h).
+// A bounding volume tree over the boxes of whole motions (kernels/bvh.h).
 #pragma once
 
-#include "kernels/bvh.h"
 #include "kernels/parallel/parallel.h"
+#include "sim/collision/moving_boxes.h"
 
 namespace icloth::ICLOTH_BUILD {
 
@@ -10,17 +10,17 @@ class Tree {
  public:
   /// Builds the tree over the elements first, first + 1 … boxes.size() − 1, sorted anew (in the
   /// Morton order of their boxes' centres).
-  void build(View<const Box> boxes, Index first);
+  void build(const MovingBoxes& boxes, Index first);
   /// Builds the tree over the listed elements alone.
-  void build(View<const Box> boxes, View<const Index> elements);
+  void build(const MovingBoxes& boxes, View<const Index> elements);
   /// Takes new boxes and keeps the order of the leaves.
-  void refit(View<const Box> boxes);
+  void refit(const MovingBoxes& boxes);
   bool empty() const { return items_.size() == 0; }
   TreeView view() const;
 
  private:
   template <class Items>
-  void sort(View<const Box> boxes, const Items& items, Index count);
+  void sort(const MovingBoxes& boxes, const Items& items, Index count);
 
   Array<Index> items_;  ///< element numbers in leaf order
   Array<TreeNode> nodes_;

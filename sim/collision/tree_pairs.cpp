@@ -16,7 +16,7 @@ struct CountTests {
 /// Finds the (vertex, face) candidates of one vertex against one tree.
 struct VertexFaceQuery {
   TreeView tree;
-  View<const Box> box;
+  MovingBoxes vertex_box, face_box;
   View<const Int3> face;
   View<const Index> list;  ///< query vertices; null: from `first` on
   Index first;
@@ -24,8 +24,9 @@ struct VertexFaceQuery {
   template <class Emit>
   ICLOTH_HD Index operator()(Index i, Emit& emit) const {
     const Index v = list.data() == nullptr ? first + i : list[i];
-    return query_tree(tree, box[v], kNone, [&](Index, Index f) {
-      if (!has_vertex(face[f], v)) emit(Pair{v, f});
+    const MovingBox own = vertex_box.at(v);
+    return query_tree(tree, own.swept(), kNone, [&](Index, Index f) {
+      if (!has_vertex(face[f], v) && !stay_apart(own, face_box, f)) emit(Pair{v, f});
     });
   }
 };
@@ -46,15 +47,18 @@ struct CleanVertexQuery {
 struct EdgeEdgeQuery {
   TreeView tree;
   View<const Index> order;  ///< query edges in leaf order
-  View<const Box> box;
+  MovingBoxes box;
   View<const Int2> edge;
   bool own_tree;
 
   template <class Emit>
   ICLOTH_HD Index operator()(Index leaf, Emit& emit) const {
     const Index e = order[leaf];
-    return query_tree(tree, box[e], own_tree ? leaf : kNone, [&](Index, Index other) {
-      if (!share_vertex(edge[e], edge[other])) emit(ordered_pair(e, other));
+    const MovingBox own = box.at(e);
+    const Int2 ends = edge[e];
+    return query_tree(tree, own.swept(), own_tree ? leaf : kNone, [&](Index, Index other) {
+      if (!share_vertex(ends, edge[other]) && !stay_apart(own, box, other))
+        emit(ordered_pair(e, other));
     });
   }
 };
@@ -63,15 +67,17 @@ struct EdgeEdgeQuery {
 struct DirtyEdgeQuery {
   TreeView tree;
   View<const Index> list;
-  View<const Box> box;
+  MovingBoxes box;
   DirtyEdges dirty;
 
   template <class Emit>
   ICLOTH_HD Index operator()(Index i, Emit& emit) const {
     const Index e = list[i];
-    return query_tree(tree, box[e], kNone, [&](Index, Index other) {
+    const MovingBox own = box.at(e);
+    return query_tree(tree, own.swept(), kNone, [&](Index, Index other) {
       if (e > other && dirty(other)) return;
-      if (!share_vertex(dirty.edge[e], dirty.edge[other])) emit(ordered_pair(e, other));
+      if (!share_vertex(dirty.edge[e], dirty.edge[other]) && !stay_apart(own, box, other))
+        emit(ordered_pair(e, other));
     });
   }
 };
@@ -80,8 +86,8 @@ struct DirtyEdgeQuery {
 
 void TreePairs::update(const Topology& mesh, const ElementBoxes& boxes, bool rebuild) {
   // A tree over a range keeps the boxes before it, as its items are numbered by the whole list.
-  const auto update = [&](Tree& tree, View<const Box> all, Index first, Index last) {
-    const View<const Box> upto = all.sub(0, last);
+  const auto update = [&](Tree& tree, const MovingBoxes& all, Index first, Index last) {
+    const MovingBoxes upto = all.sub(0, last);
     if (rebuild)
       tree.build(upto, first);
     else
@@ -113,8 +119,8 @@ void TreePairs::find(const Topology& mesh, const ElementBoxes& boxes, Candidates
   const auto vertices_against = [&](const Tree& tree, Index first, Index count) {
     if (tree.empty()) return;
     run("broad_phase.vertex_face", count,
-        VertexFaceQuery{tree.view(), boxes.vertex, mesh.face.view(), {}, first}, out.vertex_faces,
-        out);
+        VertexFaceQuery{tree.view(), boxes.vertex, boxes.face, mesh.face.view(), {}, first},
+        out.vertex_faces, out);
   };
   vertices_against(cloth_faces_, 0, mesh.cloth_vertices);
   vertices_against(obstacle_faces_, 0, mesh.cloth_vertices);
@@ -145,7 +151,8 @@ void TreePairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
   for (const Tree* tree : {&cloth_faces_, &obstacle_faces_}) {
     if (tree->empty()) continue;
     run("broad_phase.vertex_face", dirty_vertices_.size(),
-        VertexFaceQuery{tree->view(), boxes.vertex, mesh.face.view(), dirty_vertices_.view(), 0},
+        VertexFaceQuery{tree->view(), boxes.vertex, boxes.face, mesh.face.view(),
+                        dirty_vertices_.view(), 0},
         out.vertex_faces, out);
   }
 
@@ -153,8 +160,9 @@ void TreePairs::find_dirty(const Topology& mesh, const ElementBoxes& boxes,
   dirty_face_tree_.build(boxes.face, dirty_faces_.view());
   if (!dirty_face_tree_.empty())
     run("broad_phase.vertex_face", mesh.vertices,
-        CleanVertexQuery{{dirty_face_tree_.view(), boxes.vertex, mesh.face.view(), {}, 0},
-                         dirty_vertex},
+        CleanVertexQuery{
+            {dirty_face_tree_.view(), boxes.vertex, boxes.face, mesh.face.view(), {}, 0},
+            dirty_vertex},
         out.vertex_faces, out);
 
   // Dirty edges are compared with all edges.

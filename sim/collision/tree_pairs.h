@@ -11,9 +11,9 @@ class TreePairs {
   /// Takes new boxes. With `rebuild` the order of the leaves is made anew as well.
   void update(const Topology& mesh, const ElementBoxes& boxes, bool rebuild);
 
-  /// Finds all pairs whose boxes overlap.
+  /// Finds all pairs whose boxes overlap and that do not stay apart.
   void find(const Topology& mesh, const ElementBoxes& boxes, Candidates& out);
-  /// Finds the pairs whose boxes overlap and that have a dirty vertex. `dirty` holds 1 or 0
+  /// Finds those of them that have a dirty vertex. `dirty` holds 1 or 0
   /// (cloth_vertices).
   void find_dirty(const Topology& mesh, const ElementBoxes& boxes, View<const std::uint8_t> dirty,
                   Candidates& out);

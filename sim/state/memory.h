@@ -123,9 +123,10 @@ struct MemoryOf {
   /// nothing started closer than that, and once the repulsion has its whole thickness.
   List<Real> start_gap;
 
-  /// Regions in which the broad phase has all candidate pairs (vertices); empty: nowhere. The
-  /// pairs in contact depend on it: those just beyond the thickness are in the lists or not.
-  List<typename Storage::Box> trusted;
+  /// Regions of the start and of the end of paths for which the broad phase has all candidate pairs
+  /// (vertices each); empty: none. The pairs in contact depend on them: those just beyond the
+  /// thickness are in the lists or not.
+  List<typename Storage::Box> trusted_start, trusted_end;
   bool trusted_complete = false;  ///< the lists hold all pairs of the boxes, not the dirty alone
 
   List<LetGo> let_go;  ///< sorted by vertex and body, mostly empty
@@ -175,7 +176,8 @@ void for_each_part(const Visit& visit, Memory&... m) {
   visit(MemoryPart{"seams", Extent::seams}, m.seams...);
 
   // The rest are the boxes of the candidate lists, the vertices let go from bodies, and the hands.
-  visit(MemoryPart{"trusted", Extent::vertices, true}, m.trusted...);
+  visit(MemoryPart{"trusted_start", Extent::vertices, true}, m.trusted_start...);
+  visit(MemoryPart{"trusted_end", Extent::vertices, true}, m.trusted_end...);
   visit(MemoryPart{"trusted_complete", Extent::single}, m.trusted_complete...);
   visit(MemoryPart{"let_go", Extent::any}, m.let_go...);
   visit(MemoryPart{"hands", Extent::any}, m.hands...);

@@ -19,8 +19,8 @@ struct Spring {
 ///
 /// Who writes the memory during a step: x1 implicit and impact_zones, v and past finish_substep
 /// (those of moving obstacles begin_substep), held and start_gap proximity, yarns match_yarns and
-/// update_yarn_anchors, trusted broad_phase, hands use_hands. Until a substep is accepted, x1 is a
-/// candidate.
+/// update_yarn_anchors, trusted_* broad_phase, hands use_hands. Until a substep is accepted, x1 is
+/// a candidate.
 struct State : Memory {
   Array<Vec3r> x0;         ///< positions at the start of the substep [m] (vertices), begin_substep
   Array<Vec3r> candidate;  ///< x*, the end without impacts [m] (cloth_vertices), implicit

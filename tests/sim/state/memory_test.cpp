@@ -45,7 +45,9 @@ Snapshot full_snapshot() {
   s.yarns = {{{number(), number(), number()}, number()}};
   s.yarns_bend = true;
   for (int k = 0; k < 4; ++k)
-    s.trusted.push_back({{1, 2, 3}, {4, 5, 6.5F + static_cast<float>(k)}});
+    s.trusted_start.push_back({{1, 2, 3}, {4, 5, 6.5F + static_cast<float>(k)}});
+  s.trusted_end = s.trusted_start;
+  s.trusted_end[3].lo[0] = 0.5F;
   s.trusted_complete = true;
 
   s.stitches = {{number(), number(), 3}, {-1, number(), 0}};
@@ -104,7 +106,8 @@ TEST(Memory, SurvivesAsBytesInEveryPart) {
   EXPECT_EQ(again.yarns[0].shear, full.yarns[0].shear);
   EXPECT_TRUE(again.yarns_bend);
   EXPECT_EQ(again.start_gap, full.start_gap);
-  EXPECT_EQ(again.trusted[3].hi[2], 9.5F);
+  EXPECT_EQ(again.trusted_start[3].hi[2], 9.5F);
+  EXPECT_EQ(again.trusted_end[3].lo[0], 0.5F);
   ASSERT_EQ(again.stitches.size(), 2u);
   EXPECT_EQ(again.stitches[0].mark, full.stitches[0].mark);
   EXPECT_EQ(again.seams.at(0).next, 33);
@@ -185,7 +188,7 @@ TEST(Memory, RefusesOtherFilesAndVersions) {
   EXPECT_NE(refusal(other).find("ICLOTHME"), std::string::npos);
   other = memory_to_bytes(full_snapshot());
   put(other, 8, std::uint32_t{1});
-  EXPECT_NE(refusal(other).find("version 1, expected 4"), std::string::npos);
+  EXPECT_NE(refusal(other).find("version 1, expected 5"), std::string::npos);
 }
 
 TEST(Memory, CountsTheBytesOfItsLists) {
@@ -224,7 +227,8 @@ TEST(Memory, OfAnotherSceneIsRefusedByPartAndCount) {
   EXPECT_EQ(misfit([](Snapshot& s) { s.let_go[1].side = 0; }),
             "snapshot of another scene: let_go: side 0, expected 1 or -1");
   EXPECT_NE(misfit([](Snapshot& s) { s.start_gap.resize(1); }), "");
-  EXPECT_NE(misfit([](Snapshot& s) { s.trusted.resize(1); }), "");
+  EXPECT_NE(misfit([](Snapshot& s) { s.trusted_start.resize(1); }), "");
+  EXPECT_NE(misfit([](Snapshot& s) { s.trusted_end.resize(1); }), "");
   EXPECT_EQ(misfit([](Snapshot& s) { s.stitches.pop_back(); }),
             "snapshot of another scene: stitches: 1 elements, expected 2");
   EXPECT_NE(misfit([](Snapshot& s) { s.seams.clear(); }), "");
@@ -347,7 +351,7 @@ TEST_P(BuiltInScenes, GoOnInAFreshSimulatorFromEveryStep) {
     return std::ranges::any_of(run.before, condition);
   };
   EXPECT_TRUE(any([](const Snapshot& s) { return s.hands.size() >= 2; }));
-  EXPECT_TRUE(any([](const Snapshot& s) { return !s.trusted.empty() && s.trusted_complete; }));
+  EXPECT_TRUE(any([](const Snapshot& s) { return !s.trusted_end.empty() && s.trusted_complete; }));
   EXPECT_TRUE(GetParam().scene == "flag" || GetParam().scene == "funnel" ||
               any([](const Snapshot& s) { return !s.held.empty(); }));
   EXPECT_EQ(any([](const Snapshot& s) { return !s.yarns.empty(); }), GetParam().scene == "drape");
