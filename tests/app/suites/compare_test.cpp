@@ -53,7 +53,7 @@ class CompareRun : public Cli {};
 TEST_F(CompareRun, AProgramEndsWhereItselfEnds) {
   const Outcome outcome =
       icloth(std::string("bench compare '") + ICLOTH_PROGRAM +
-             "' --scale 0.001 --case funnel --repeat 2 --threads 1 --quiet --out here");
+             "' --scale 0.001 --case funnel --repeat 1 --threads 1 --quiet --out here");
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   const std::string table = read(folder_ / "here/compare.csv");
   EXPECT_EQ(count_lines(table), 3u) << "a quick look at two stretches\n" << table;
