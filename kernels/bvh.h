@@ -85,7 +85,9 @@ ICLOTH_HD inline unsigned overlapping_children_one_by_one(const TreeNode& node, 
 ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& box) {
 #if defined(__CUDACC__) || !defined(__SSE2__)
   return overlapping_children_one_by_one(node, box);
+
 #elif defined(__AVX__)
+  // A child is apart where it lies above or below in one of the axes.
   __m256 apart = _mm256_setzero_ps();
   for (int k = 0; k < 3; ++k) {
     const __m256 above =
@@ -95,7 +97,9 @@ ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& 
     apart = _mm256_or_ps(apart, _mm256_or_ps(above, below));
   }
   return ~static_cast<unsigned>(_mm256_movemask_ps(apart)) & 0xFFu;
+
 #else
+  // The same for four children at a time.
   unsigned mask = 0;
   for (int half = 0; half < kTreeWidth; half += 4) {
     __m128 apart = _mm_setzero_ps();

@@ -90,17 +90,19 @@ struct Whereabouts {
   View<const Box> start, end;
   Real margin;
 
-  ICLOTH_HD bool fresh(Index i) const {
-    return contains(start[i], paths.start_box(i, margin)) && ends_inside(i);
+  /// Whether the path leads into the second box, from the first one (`fresh`) or in it.
+  ICLOTH_HD bool stays(Index i, bool fresh) const {
+    return contains(end[i], paths.end_box(i, margin)) &&
+           contains(fresh ? start[i] : end[i], paths.start_box(i, margin));
   }
-  ICLOTH_HD bool still(Index i) const {
-    return contains(end[i], paths.start_box(i, margin)) && ends_inside(i);
-  }
-  ICLOTH_HD bool ends_inside(Index i) const { return contains(end[i], paths.end_box(i, margin)); }
+
   /// 1 where the path is not from the first box to the second, and 2³² where it is not in the
   /// second: sums of both numbers of vertices fit into one.
   ICLOTH_HD std::int64_t operator()(Index i) const {
-    return (fresh(i) ? 0 : std::int64_t{1}) + (still(i) ? 0 : std::int64_t{1} << 32);
+    constexpr std::int64_t not_fresh = 1, not_still = std::int64_t{1} << 32;
+    if (!contains(end[i], paths.end_box(i, margin))) return not_fresh + not_still;
+    const Box from = paths.start_box(i, margin);
+    return (contains(start[i], from) ? 0 : not_fresh) + (contains(end[i], from) ? 0 : not_still);
   }
 };
 
@@ -116,7 +118,7 @@ struct ReplaceBoxes {
   Real pad;
 
   ICLOTH_HD void operator()(Index i) const {
-    const bool stays = fresh ? where.fresh(i) : where.still(i);
+    const bool stays = where.stays(i, fresh);
     if (i < cloth_vertices) left[i] = stays ? 0 : 1;
     if (stays) {
       if (!fresh) start[i] = end[i];
@@ -132,9 +134,7 @@ struct BodiesLeft {
   Whereabouts where;
   Index first;
   bool fresh;
-  ICLOTH_HD Index operator()(Index k) const {
-    return (fresh ? where.fresh(first + k) : where.still(first + k)) ? 0 : 1;
-  }
+  ICLOTH_HD Index operator()(Index k) const { return where.stays(first + k, fresh) ? 0 : 1; }
 };
 
 /// Picks the pairs of vertices that stayed in their boxes and that may still meet.

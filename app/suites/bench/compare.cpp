@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <numeric>
@@ -76,7 +75,7 @@ class Comparison {
       : options_(options), scene_(scene), stretch_(stretch), folder_(folder) {}
 
   /// A program makes its own state at the beginning of the stretch, as another version may not read
-  /// it. Throws InputError where the program fails.
+  /// it. Throws std::runtime_error where the program fails.
   void begin(const Program& program) const {
     std::vector<std::string> words = command(program, stretch_.first);
     words.insert(words.end(), {"--checkpoint", checkpoint(program), "--checkpoint-every",
@@ -103,10 +102,8 @@ class Comparison {
   std::vector<std::string> command(const Program& program, long steps) const {
     std::vector<std::string> words = {program.path, "run",     std::string(scene_.name),
                                       "--quiet",    "--steps", std::to_string(steps)};
-    const long triangles = std::lround(std::max(options_.scale * scene_.triangles, 100.0));
-    words.insert(words.end(), {"--set", "triangles=" + std::to_string(triangles)});
-    if (stretch_.clip_start >= 0)
-      words.insert(words.end(), {"--set", "clip_start=" + number_text(stretch_.clip_start)});
+    for (const std::string& change : overrides_of(options_.scale, scene_, stretch_))
+      words.insert(words.end(), {"--set", change});
     words.insert(words.end(), {"--device", options_.device.empty() ? "cpu" : options_.device});
     if (options_.threads > 0)
       words.insert(words.end(), {"--threads", std::to_string(options_.threads)});

@@ -31,8 +31,8 @@ double seconds_since(Clock::time_point begin) {
 
 }  // namespace
 
-int triangles_of(const PaperContext& context, const PaperScene& scene) {
-  return static_cast<int>(std::lround(std::max(context.scale * scene.triangles, kFewestTriangles)));
+int triangles_of(double scale, const PaperScene& scene) {
+  return static_cast<int>(std::lround(std::max(scale * scene.triangles, kFewestTriangles)));
 }
 
 std::string run_name(const PaperScene& scene, const Stretch& stretch) {
@@ -46,9 +46,9 @@ std::string measurement_name(const PaperScene& scene, const Stretch& stretch,
   return run_name(scene, stretch) + "/" + std::to_string(stretch.first) + "/" + mode;
 }
 
-std::vector<std::string> overrides_of(const PaperContext& context, const PaperScene& scene,
+std::vector<std::string> overrides_of(double scale, const PaperScene& scene,
                                       const Stretch& stretch) {
-  std::vector<std::string> list = {"triangles=" + std::to_string(triangles_of(context, scene))};
+  std::vector<std::string> list = {"triangles=" + std::to_string(triangles_of(scale, scene))};
   if (stretch.clip_start >= 0) list.push_back("clip_start=" + number_text(stretch.clip_start));
   return list;
 }
@@ -56,7 +56,8 @@ std::vector<std::string> overrides_of(const PaperContext& context, const PaperSc
 std::string key_of(const PaperContext& context, const PaperScene& scene, const Stretch& stretch) {
   const std::string file = assets_folder() + "/scenes/" + std::string(scene.name) + ".json";
   std::string key = context.machine + ", scene " + sum_text(read_file(file));
-  for (const std::string& override : overrides_of(context, scene, stretch)) key += ", " + override;
+  for (const std::string& override : overrides_of(context.scale, scene, stretch))
+    key += ", " + override;
   return key;
 }
 
@@ -175,8 +176,9 @@ void PaperRun::open() {
                                      std::to_string(status.step));
     return true;
   };
-  std::shared_ptr<const Scene> scene = open_scene(
-      std::string(scene_.name), overrides_of(context_, scene_, stretches_[0]), &origin, watch);
+  std::shared_ptr<const Scene> scene =
+      open_scene(std::string(scene_.name), overrides_of(context_.scale, scene_, stretches_[0]),
+                 &origin, watch);
 
   // The new simulator stands at the start of the run.
   simulator_ = make_simulator(context_.build, std::move(scene));
@@ -186,7 +188,7 @@ void PaperRun::open() {
   recording_ = {};
   recording_.scene = scene_.name;
   recording_.build = build_name(context_.build);
-  recording_.overrides = overrides_of(context_, scene_, stretches_[0]);
+  recording_.overrides = overrides_of(context_.scale, scene_, stretches_[0]);
 }
 
 void PaperRun::resume() {

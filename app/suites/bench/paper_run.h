@@ -26,8 +26,8 @@ struct PaperContext {
   PaperProgress& progress;
 };
 
-/// The scene with its number of triangles as the context scales it.
-int triangles_of(const PaperContext& context, const PaperScene& scene);
+/// Triangles of a scene at a share of the number that the paper gives it.
+int triangles_of(double scale, const PaperScene& scene);
 
 /// Name of the run that leads to a stretch, and of the measurement of one way.
 std::string run_name(const PaperScene& scene, const Stretch& stretch);
@@ -37,7 +37,7 @@ std::string measurement_name(const PaperScene& scene, const Stretch& stretch,
 /// All that a result of a stretch depends on: program, machine, the file of the scene, its size.
 std::string key_of(const PaperContext& context, const PaperScene& scene, const Stretch& stretch);
 /// The changes of the scene by which its run to a stretch starts, as --set takes them.
-std::vector<std::string> overrides_of(const PaperContext& context, const PaperScene& scene,
+std::vector<std::string> overrides_of(double scale, const PaperScene& scene,
                                       const Stretch& stretch);
 
 /// In place of a mode: the bandwidth of the memory before and after a stretch.

@@ -84,7 +84,7 @@ void add_speed_table(const PaperResults& results, Report& report) {
     const Speed cama = speed_of(results, scene, "cama"), pscc = speed_of(results, scene, "pscc");
     const PublishedSpeed& paper = scene.published;
 
-    table.add({std::string(scene.title), std::to_string(triangles_of(results.context, scene)),
+    table.add({std::string(scene.title), std::to_string(triangles_of(results.context.scale, scene)),
                "1/" + std::to_string(scene.rate), format_number(paper.cama),
                format_number(paper.pscc), format_number(paper.icloth),
                rate_text(whole_runs(results, scene)), format_number(own.worst, 3),
