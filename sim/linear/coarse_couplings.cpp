@@ -47,12 +47,18 @@ struct StartsBlock {
   ICLOTH_HD bool operator()(Index i) const { return i == 0 || terms[i].key != terms[i - 1].key; }
 };
 
+struct BlockColumn {
+  View<const CoarseTerm> terms;
+  View<const Index> starts;
+  View<Index> column;
+  ICLOTH_HD void operator()(Index k) const { column[k] = column_of(terms[starts[k]].key); }
+};
+
 /// Sums up the terms of one block.
 struct SumBlock {
   View<const CoarseTerm> terms;
   View<const Index> starts;
   View<const Coupling> couplings;
-  View<Index> column;
   View<Mat3r> value;
 
   ICLOTH_HD void operator()(Index k) const {
@@ -60,7 +66,6 @@ struct SumBlock {
     Mat3r sum{};
     for (Index t = starts[k]; t < end; ++t)
       sum += couplings[terms[t].coupling].h.scaled(terms[t].weight);
-    column[k] = column_of(terms[starts[k]].key);
     value[k] = sum;
   }
 };
@@ -80,6 +85,15 @@ struct FirstBlocks {
 }  // namespace
 
 void CoarseCouplings::fill(const SystemView& system, View<const Index> group, Index nodes) {
+  const CouplingView& couplings = system.couplings;
+  if (layout_ == 0 || couplings.layout != layout_) lay_out(system, group, nodes);
+  layout_ = couplings.layout;
+  if (couplings.size() == 0) return;
+  for_each("implicit.coarse_sums", starts_.size(),
+           SumBlock{terms_.view(), starts_.view(), couplings.list, value_.view()});
+}
+
+void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group, Index nodes) {
   const View<const Coupling> couplings = system.couplings.list;
   first_.resize(0);
   if (couplings.size() == 0) return;
@@ -94,8 +108,8 @@ void CoarseCouplings::fill(const SystemView& system, View<const Index> group, In
   compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
   column_.resize(starts_.size());
   value_.resize(starts_.size());
-  for_each("implicit.coarse_sums", starts_.size(),
-           SumBlock{terms_.view(), starts_.view(), couplings, column_.view(), value_.view()});
+  for_each("implicit.coarse_columns", starts_.size(),
+           BlockColumn{terms_.view(), starts_.view(), column_.view()});
 
   // The rows of the blocks follow by bisection.
   first_.resize(nodes + 1);

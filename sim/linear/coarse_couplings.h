@@ -18,13 +18,17 @@ struct CoarseTerm {
 class CoarseCouplings {
  public:
   /// Makes the rows from the couplings of the system. `group` is the node of each vertex
-  /// (vertices).
+  /// (vertices). While the layout of the couplings stays, so must the prescribed vertices; only the
+  /// numbers are renewed then.
   void fill(const SystemView& system, View<const Index> group, Index nodes);
 
   /// The rows; there are none without couplings. Valid until the next fill.
   CoarseRows rows() const { return {first_.view(), column_.view(), value_.view()}; }
 
  private:
+  void lay_out(const SystemView& system, View<const Index> group, Index nodes);
+
+  std::uint64_t layout_ = 0;         ///< of the couplings, see CouplingView
   Array<CoarseTerm> found_, terms_;  ///< the latter sorted by key
   SortedAppend append_sorted_;
   Array<Index> starts_;  ///< first term of each block

@@ -3,23 +3,46 @@
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
-struct IsActive {
+/// A contact that is active and has no place yet.
+struct NeedsPlace {
   View<const ContactTerm> terms;
-  ICLOTH_HD bool operator()(Index i) const { return terms[i].active != 0; }
+  View<const Index> listed;
+  ICLOTH_HD Index operator()(Index i) const {
+    return terms[i].active != 0 && listed[i] == 0 ? 1 : 0;
+  }
 };
 
-struct Pack {
-  View<const Contact> contacts;
+struct HasPlace {
   View<const ContactTerm> terms;
-  View<const Index> active;
+  View<const Index> listed;
+  ICLOTH_HD bool operator()(Index i) const { return terms[i].active != 0 || listed[i] != 0; }
+};
+
+struct TakePlace {
+  View<const Contact> contacts;
+  View<const Index> contact;
   View<Coupling> list;
   View<Int4> slots;
+  View<Index> listed;
 
   ICLOTH_HD void operator()(Index i) const {
-    const Stencil& s = contacts[active[i]].s;
-    const ContactTerm& t = terms[active[i]];
-    list[i] = {s, t.h, t.impulse};
+    const Stencil& s = contacts[contact[i]].s;
+    list[i].s = s;
     slots[i] = {{s.v[0], s.v[1], s.v[2], s.v[3]}};
+    listed[contact[i]] = 1;
+  }
+};
+
+/// The terms of contacts that are not active are zero.
+struct TakeTerm {
+  View<const ContactTerm> terms;
+  View<const Index> contact;
+  View<Coupling> list;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const ContactTerm& t = terms[contact[i]];
+    list[i].h = t.h;
+    list[i].impulse = t.impulse;
   }
 };
 
@@ -40,15 +63,34 @@ struct Append {
 
 void Couplings::gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
                        View<const Coupling> more) {
-  const Index count = contacts.size() == 0 ? 0
-                                           : compact("implicit.active_contacts", contacts.size(),
-                                                     IsActive{terms}, active_);
-  const Index total = count + more.size();
+  if (must_lay_out(terms)) lay_out(contacts, terms, vertices, more);
+  for_each("implicit.couplings", contact_.size(), TakeTerm{terms, contact_.view(), list_.view()});
+}
+
+bool Couplings::must_lay_out(View<const ContactTerm> terms) const {
+  return !laid_out_ || reduce("implicit.new_couplings", terms.size(), Index{0},
+                              NeedsPlace{terms, listed_.view()}, Sum{}) > 0;
+}
+
+void Couplings::lay_out(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
+                        View<const Coupling> more) {
+  if (!laid_out_) {
+    listed_.resize(contacts.size());
+    listed_.fill(0);
+  }
+  laid_out_ = true;
+  ++layout_;
+
+  // Contacts come in their own order, so that sums over them do not depend on when they closed.
+  contact_.resize(0);
+  if (contacts.size() > 0)
+    compact("implicit.active_contacts", contacts.size(), HasPlace{terms, listed_.view()}, contact_);
+  const Index count = contact_.size(), total = count + more.size();
   list_.resize(total);
   slots_.resize(total);
   if (total == 0) return;
   for_each("implicit.couplings", count,
-           Pack{contacts, terms, active_.view(), list_.view(), slots_.view()});
+           TakePlace{contacts, contact_.view(), list_.view(), slots_.view(), listed_.view()});
   if (more.size() > 0)
     for_each("implicit.couplings", more.size(), Append{more, count, list_.view(), slots_.view()});
   incidence_.build(slots_.view(), vertices);

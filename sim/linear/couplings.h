@@ -1,5 +1,5 @@
-// The contacts that act in a pass of the implicit step, packed for the solver, which goes through
-// them in every iteration: most pairs in proximity are apart and do not act.
+// The contacts of the implicit step that act, packed for the solver, which goes through them in
+// every iteration: most pairs in proximity are apart and do not act.
 #pragma once
 
 #include "kernels/contact.h"
@@ -12,11 +12,16 @@ struct Coupling {
   Stencil s;
   Symmetric h;
   Vec3r impulse;
+
+  /// Whether it adds anything: a contact that has opened again since its step was laid out does
+  /// not.
+  ICLOTH_HD bool acts() const { return h.m[0] + h.m[3] + h.m[5] > 0; }
 };
 
 struct CouplingView {
   View<const Coupling> list;
   View<const Index> first, entries;  ///< see Incidence; not read where the list is empty
+  std::uint64_t layout = 0;  ///< equal numbers of one Couplings have the same stencils; 0: unknown
 
   Index size() const { return list.size(); }
 
@@ -28,21 +33,38 @@ struct CouplingView {
       f(entries[k] / 4, list[entries[k] / 4].s.w[entries[k] % 4]);
   }
 
-  ICLOTH_HD bool touch(Index i) const { return list.size() > 0 && first[i] < first[i + 1]; }
+  ICLOTH_HD bool touch(Index i) const {
+    bool found = false;
+    of_vertex(i, [&](Index c, Real) { found = found || list[c].acts(); });
+    return found;
+  }
 };
 
 class Couplings {
  public:
-  /// Takes the contacts whose terms are active, and after them `more`. `vertices` is the number of
-  /// cloth vertices; corners from there on belong to obstacles and are left out of the lists of
-  /// vertices.
+  /// Forgets the contacts. To be called whenever `contacts`, `vertices` or `more` of gather change.
+  void clear() { laid_out_ = false; }
+
+  /// Takes the contacts whose terms are active, and after them `more`. Contacts that it took since
+  /// the last clear() keep their places, with nothing in them while they are not active, so that
+  /// the lists need not be made again in every pass. `vertices` is the number of cloth vertices;
+  /// corners from there on belong to obstacles and are left out of the lists of vertices.
   void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
               View<const Coupling> more = {});
 
-  CouplingView view() const { return {list_.view(), incidence_.first(), incidence_.entries()}; }
+  CouplingView view() const {
+    return {list_.view(), incidence_.first(), incidence_.entries(), layout_};
+  }
 
  private:
-  Array<Index> active_;
+  bool must_lay_out(View<const ContactTerm> terms) const;
+  void lay_out(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
+               View<const Coupling> more);
+
+  bool laid_out_ = false;
+  std::uint64_t layout_ = 0;
+  Array<Index> listed_;   ///< 1: it has a place in the list (contacts)
+  Array<Index> contact_;  ///< of each coupling, ascending
   Array<Coupling> list_;
   Array<Int4> slots_;
   Incidence incidence_;

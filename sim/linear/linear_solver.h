@@ -35,6 +35,11 @@ class LinearSolver {
   LinearSolution solve(const SystemView& system, View<const Mat3r> inverse_diagonal,
                        View<const Vec3r> b, View<Vec3r> padded, const SolveOptions& options);
 
+  /// The system times the solution of the last solve, and H Σ w x of each coupling in it. Valid
+  /// until the next solve, unless its right-hand side was zero.
+  View<const Vec3r> product() const { return q_.view(); }
+  View<const Vec3r> coupling_products() const { return contact_.view(); }
+
  private:
   Hierarchy hierarchy_;
   Array<Vec3r> r_, z_, p_, q_, best_;

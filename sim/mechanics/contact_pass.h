@@ -4,6 +4,7 @@
 #pragma once
 
 #include "sim/linear/linear_solver.h"
+#include "sim/mechanics/line_search.h"
 #include "sim/mechanics/pattern_builder.h"
 #include "sim/state/state.h"
 
@@ -36,14 +37,26 @@ class ContactPasses {
   CouplingView couplings() const { return couplings_.view(); }
 
  private:
-  void solve_once(SubstepContext& step, const ContactSystem& system, View<Vec3r> dv,
-                  bool same_matrix);
+  struct PassResult {
+    bool exact = false;   ///< solved to the full tolerance, and gone all the way
+    double residual = 0;  ///< of the linear system, ‖b − A Δv‖₂ / ‖b‖₂
+  };
+
+  void start(SubstepContext& step, const ContactSystem& system, const VertexMotion& motion,
+             View<const Vec3r> dv, bool solved);
+  PassResult correct(SubstepContext& step, const ContactSystem& system, const ContactLine& line,
+                     View<Vec3r> dv, double loose, bool same_matrix);
 
   Array<ContactTerm> terms_;       ///< one for each contact
+  Array<ContactTravel> travels_;   ///< (contacts)
   Couplings couplings_;            ///< the terms that act
+  Array<Vec3r> force_;             ///< of each coupling at the present Δv [N·s]
+  Array<Vec3r> residual_;          ///< b − A Δv without contacts [N·s] (cloth_vertices)
+  Array<Vec3r> g_;                 ///< the same with contacts [N·s] (cloth_vertices)
+  Array<Vec3r> d_;                 ///< correction of Δv [m/s] (cloth_vertices + kPadding)
   Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
-  Array<Vec3r> rhs_;               ///< with contacts [N·s] (cloth_vertices)
   LinearSolver solver_;
+  LineSearch line_search_;
   Vec3d residual_force_;
   double work_ = 0;
 };

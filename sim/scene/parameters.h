@@ -58,8 +58,8 @@ struct ImplicitParameters {
   Preconditioner preconditioner = Preconditioner::multilevel;
   double cg_tolerance = 1e-3;
   int cg_max_iterations = 500;
-  int contact_passes = 6;
-  double contact_tolerance = 1e-3;
+  int contact_passes = 30;
+  double contact_tolerance = 1e-2;
   int newton_iterations = 5;
   double newton_tolerance = 5;
   double max_linearization_error = 1e3;

@@ -62,8 +62,8 @@ std::vector<Setting> settings(const TrialScene& scene) {
   add("preconditioner", "implicit.preconditioner", {"block_jacobi", "multilevel"});
 
   // These settings belong to the handling of contacts.
-  add("contact passes", "implicit.contact_passes", {"1", "2", "3"});
-  add("contact tolerance", "implicit.contact_tolerance", {"0.1", "0.01", "0.0001"});
+  add("contact passes", "implicit.contact_passes", {"3", "6", "12"});
+  add("contact tolerance", "implicit.contact_tolerance", {"0.1", "0.01", "0.001"});
   add("zone solver", "impact_zones.solver", {"augmented_lagrangian", "linear"});
   add("zone iterations", "impact_zones.iterations", {"10", "30", "1000"});
 
@@ -107,8 +107,8 @@ std::vector<std::string> reference_settings(const char* time_step) {
           "implicit.cg_max_iterations=5000",
           "implicit.newton_iterations=20",
           "implicit.newton_tolerance=1e-3",
-          "implicit.contact_passes=20",
-          "implicit.contact_tolerance=1e-5"};
+          "implicit.contact_passes=100",
+          "implicit.contact_tolerance=1e-4"};
 }
 
 /// A setting, the run with it, and its distance from the reference.

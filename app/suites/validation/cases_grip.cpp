@@ -26,7 +26,7 @@ std::shared_ptr<Scene> pressed_strip(const Strip& strip, double last_shortening)
   Parameters& p = scene->parameters;
   p.proximity.enabled = true;
   p.step.max_substep_levels = 6;
-  p.implicit.contact_passes = 20;
+  p.implicit.contact_passes = 100;
   p.implicit.cg_tolerance = 1e-5;
   p.proximity.thickness = 5e-4;
   p.impact_zones.offset = 5e-5;
@@ -127,7 +127,7 @@ std::shared_ptr<Scene> belt_scene(const Strip& strip, double light_leg) {
   p.proximity.thickness = kBeltThickness;
   p.impact_zones.offset = 0.1 * kBeltThickness;
   p.step.time_step = 0.005;
-  p.implicit.contact_passes = 20;
+  p.implicit.contact_passes = 100;
   p.proximity.friction_obstacle = 2;  // until it hangs at rest
 
   // The belt starts around the cylinder at the distance of the thickness.

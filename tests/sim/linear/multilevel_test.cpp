@@ -300,9 +300,85 @@ TEST(Couplings, AreTheActiveContactsWithTheirVertices) {
     EXPECT_EQ(seen, expected[at(i)]) << i;
     EXPECT_EQ(view.touch(i), !seen.empty());
   }
+  couplings.clear();
   couplings.gather({}, {}, kVertices);
   EXPECT_EQ(couplings.view().size(), 0);
   EXPECT_FALSE(couplings.view().touch(1));
+}
+
+TEST(Couplings, KeepTheirPlacesWhileContactsOpenAndCloseAgain) {
+  constexpr Index kVertices = 6;
+  std::vector<Contact> contacts(4);
+  for (int c = 0; c < 4; ++c) contacts[at(c)].s = {{c, c + 1, c + 2, 7}, {1, -1, 0, 0}};
+  Array<Contact> contact_array;
+  contact_array.upload(contacts);
+  Couplings couplings;
+  const auto gather = [&](const std::vector<int>& active) {
+    std::vector<ContactTerm> terms(4);
+    for (const int c : active) {
+      terms[at(c)].active = 1;
+      terms[at(c)].h = {{1, 0, 0, 1, 0, static_cast<Real>(c)}};
+    }
+    Array<ContactTerm> array;
+    array.upload(terms);
+    couplings.gather(contact_array.view(), array.view(), kVertices);
+    return couplings.view();
+  };
+  const auto corners = [](const CouplingView& view) {
+    std::vector<Index> first;
+    for (Index c = 0; c < view.size(); ++c) first.push_back(view.list[c].s.v[0]);
+    return first;
+  };
+
+  // A contact that opens keeps its place, with nothing in it.
+  const std::uint64_t layout = gather({1, 3}).layout;
+  CouplingView view = gather({3});
+  EXPECT_EQ(view.layout, layout);
+  EXPECT_EQ(corners(view), (std::vector<Index>{1, 3}));
+  EXPECT_FALSE(view.list[0].acts());
+  EXPECT_TRUE(view.list[1].acts());
+  EXPECT_FALSE(view.touch(1));
+  EXPECT_TRUE(view.touch(3));
+
+  // One that closes is put in its place, whatever was there before.
+  view = gather({0, 1});
+  EXPECT_NE(view.layout, layout);
+  EXPECT_EQ(corners(view), (std::vector<Index>{0, 1, 3}));
+  EXPECT_TRUE(view.list[1].acts());
+  EXPECT_FALSE(view.list[2].acts());
+
+  // Only clear() forgets.
+  couplings.clear();
+  EXPECT_EQ(corners(gather({2})), (std::vector<Index>{2}));
+}
+
+TEST(CoarseCouplings, RenewTheirNumbersInTheirPlaces) {
+  Sheets sheets(14, 3, 100, 90);
+  std::vector<Index> group;
+  for (Index i = 0; i < sheets.count; ++i) group.push_back(i / 5);
+  const Index nodes = group.back() + 1;
+  Array<Index> groups;
+  groups.upload(group);
+  const auto filled = [&](CoarseCouplings& coupled, Real scale) {
+    std::vector<Coupling> list = sheets.coupling_list;
+    for (Coupling& c : list)
+      for (Real& h : c.h.m) h *= scale;
+    Array<Coupling> couplings;
+    couplings.upload(list);
+    SystemView system = sheets.system();
+    system.couplings.list = couplings.view();
+    system.couplings.layout = 5;
+    coupled.fill(system, groups.view(), nodes);
+    std::vector<Real> numbers;
+    for (Index i = 0; i < nodes; ++i)
+      coupled.rows().of_row(i, [&](Index, const Mat3r& block) {
+        numbers.insert(numbers.end(), std::begin(block.m), std::end(block.m));
+      });
+    return numbers;
+  };
+  CoarseCouplings renewed, fresh;
+  filled(renewed, 1);
+  EXPECT_EQ(filled(renewed, 3), filled(fresh, 3));
 }
 
 bool connected(const Graph& graph, const std::vector<Index>& members) {
