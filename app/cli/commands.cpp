@@ -244,14 +244,16 @@ void Commands::add_sew() {
       ->add_option("PATTERN", sew.pattern,
                    "NAME_specification.json of GarmentCode; with --within, a mesh of panels")
       ->required();
-  command->add_option("--within", sew.within, "sew the borders of a mesh that are so near: 4mm")
-      ->transform(CLI::AsNumberWithUnit(
-          std::map<std::string, double>{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}))
-      ->check(CLI::Range(1e-9, 1.0));
+  CLI::Option* within =
+      command->add_option("--within", sew.within, "sew the borders of a mesh that are so near: 4mm")
+          ->transform(CLI::AsNumberWithUnit(
+              std::map<std::string, double>{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}))
+          ->check(CLI::Range(1e-9, 1.0));
   command->add_option("--rest", sew.rest, "the same panels at rest, with --within")
       ->needs("--within");
   command->add_option("--body", sew.body, "mesh that the garment is put on");
   command->add_option("--triangles", sew.triangles, "wanted number")
+      ->excludes(within)
       ->check(CLI::Range(2, 4000000))
       ->capture_default_str();
   command->add_option("--out", sew.out,
@@ -260,15 +262,18 @@ void Commands::add_sew() {
   command->add_option("--material", sew.material, "name or file of the fabric")
       ->capture_default_str();
 
-  // How it is put on, and what is told of that.
-  command->add_option("--hold", sew.hold,
-                      "label of edges that keep their height until the garment settles");
+  // How it is put on, and what is told of that. A mesh of panels is sewn where it lies.
+  command
+      ->add_option("--hold", sew.hold,
+                   "label of edges that keep their height until the garment settles")
+      ->excludes(within);
   command->add_option("--settling", sew.settling, "time with weight, in seconds")
+      ->excludes(within)
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   command->add_option("--threads", sew.threads, "threads")->check(CLI::Range(1, 4096));
   command->add_flag("--report", sew.report, "print panels, stitches, and how dressing went");
-  command->add_flag("!--no-dress", sew.dress, "write the garment as it is sewn");
+  command->add_flag("!--no-dress", sew.dress, "write the garment as it is sewn")->excludes(within);
   command->add_flag("--quiet", sew.quiet, "print errors only");
 }
 

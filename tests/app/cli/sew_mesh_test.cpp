@@ -45,6 +45,11 @@ TEST_F(Cli, PanelsOfAMeshAreSewnWhereTheirBordersMeet) {
   expect_bad_input("sew panels.obj --within 1mm --quiet --out none.obj", "no borders within 1 mm");
   expect_bad_input("sew panels.obj --within 4 --out none.obj", "--within");
   expect_bad_input("sew panels.obj --rest panels.obj --out none.obj", "--within");
+
+  // Panels are sewn where they lie: what is said about putting them on would do nothing.
+  for (const char* option : {"--triangles 100", "--hold waist", "--settling 1", "--no-dress"})
+    expect_bad_input(std::string("sew panels.obj --within 4mm --out none.obj ") + option,
+                     "--within");
 }
 
 TEST_F(Cli, ADeliveredDressIsSewnOnItsBody) {
