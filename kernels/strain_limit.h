@@ -44,6 +44,18 @@ struct LimitCurve {
   }
 };
 
+/// How far a linearisation of the limit at strain `at` is from its tension at strain `end`, as the
+/// strain that makes up for it at full stiffness.
+ICLOTH_HD inline Real missed_limit_strain(const Fabric& fabric, Sym2 at, Sym2 end) {
+  if (!(fabric.limit_strain > 0)) return 0;
+  const LimitCurve curve{1};
+  const auto excess = [&](Sym2 g) {
+    return Real(0.5) * (largest_stretch2(g) - 1) - fabric.limit_strain;
+  };
+  const Real from = excess(at), to = excess(end);
+  return std::fabs(curve.stress(to) - curve.stress(from) - curve.tangent(from) * (to - from));
+}
+
 /// Evaluates the limit of a fabric at strain g.
 ICLOTH_HD inline StrainLimit strain_limit(const Fabric& fabric, Sym2 g) {
   StrainLimit t{};

@@ -150,8 +150,8 @@ constexpr double kLooseSolve = 0.1;
 
 }  // namespace
 
-void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, View<Vec3r> dv,
-                          bool solved) {
+void ContactPasses::solve(SubstepContext& step, const ContactSystem& system,
+                          const ContactGoal& goal, View<Vec3r> dv, bool solved) {
   const ContactLaw law{static_cast<Real>(step.parameters.proximity.stiffness), system.h};
   const VertexMotion motion{
       .free = system.free_motion, .inverse_mass = step.state.inverse_mass.view(), .dt = system.h};
@@ -161,7 +161,6 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
   const ImplicitParameters& p = step.parameters.implicit;
   const View<const Contact> contacts = system.contacts.view();
   const ContactLine line{contacts, travels_.view(), motion, law};
-  PassResult result;
   for (int pass = 0;; ++pass) {
     // Each contact acts as the last solve left it: open or closed, sticking or sliding.
     const bool compared = solved || pass > 0;
@@ -170,11 +169,11 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
                RenewTerm{law, contacts, travels_.view(), compared, terms_.view()}, Sum{});
 
     // The passes end when what the contacts did is what they should have done.
-    const bool wrong = found.error > p.contact_tolerance * found.load;
-    if (pass > 0 && !wrong && result.exact) break;
+    const bool wrong = found.error > goal.contact_tolerance * found.load;
+    if (pass > 0 && !wrong && result_.exact) break;
     if (pass >= p.contact_passes) {
       // A tolerance of 0 asks for all passes.
-      if (p.contact_tolerance > 0) step.report.reach(Limit::contact_passes);
+      if (goal.contact_tolerance > 0) step.report.reach(Limit::contact_passes);
       break;
     }
 
@@ -183,9 +182,8 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system, Vie
     if (!compared && contacts.size() > 0) loose = kLooseSolve;
     if (wrong) loose = std::min(found.error / found.load, kLooseSolve);
     couplings_.gather(contacts, terms_.view(), step.mesh.cloth_vertices, system.seams);
-    result = correct(step, system, line, dv, loose, pass > 0);
+    result_ = correct(step, system, line, dv, goal.cg_tolerance, loose, pass > 0);
   }
-  step.report.cg_residual = std::max(step.report.cg_residual, result.residual);
   work_ = reduce("implicit.contact_work", contacts.size(), 0.0,
                  TermWork{law, motion, contacts, travels_.view(), dv, terms_.view()}, Sum{});
 }
@@ -216,7 +214,8 @@ void ContactPasses::start(SubstepContext& step, const ContactSystem& system,
 /// Solves for a correction of Δv with the couplings as they are, and goes along it.
 ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const ContactSystem& system,
                                                  const ContactLine& line, View<Vec3r> dv,
-                                                 double loose, bool same_matrix) {
+                                                 double cg_tolerance, double loose,
+                                                 bool same_matrix) {
   const State& s = step.state;
   const ImplicitParameters& p = step.parameters.implicit;
   const Index vertices = step.mesh.cloth_vertices;
@@ -241,7 +240,7 @@ ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const Con
   if (sums.gg == 0) return {.exact = true, .residual = 0};
 
   // The tolerance is that of the whole system, except while the contacts are still wrong.
-  const double whole = p.cg_tolerance * std::sqrt(sums.bb / sums.gg);
+  const double whole = cg_tolerance * std::sqrt(sums.bb / sums.gg);
   const double tolerance = std::max(whole, loose);
   const LinearSolution solution =
       solver_.solve(view, inverse_diagonal_.view(), g_.view(), d_.view(),

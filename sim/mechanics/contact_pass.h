@@ -20,15 +20,25 @@ struct ContactSystem {
   Real h;                         ///< from a change of velocity to one of position [s]
 };
 
+/// How well a system is to be solved.
+struct ContactGoal {
+  double contact_tolerance;  ///< share of the load with which contacts may be wrong; 0: all passes
+  double cg_tolerance;       ///< ‖b − A Δv‖₂ / ‖b‖₂
+};
+
 class ContactPasses {
  public:
   /// Prepares for systems of this pattern.
   void set_up(const Pattern& pattern) { solver_.set_up(pattern.row_first, pattern.column); }
 
-  /// Solves for Δv. `dv` has kPadding elements more than there are cloth vertices; `solved`: it is
-  /// a solution of an earlier linearisation, from which the state of the contacts is taken.
-  void solve(SubstepContext& step, const ContactSystem& system, View<Vec3r> dv, bool solved);
+  /// Solves for Δv up to the goal. `dv` has kPadding elements more than there are cloth vertices;
+  /// `solved`: it is a solution of an earlier linearisation, from which the state of the contacts
+  /// is taken.
+  void solve(SubstepContext& step, const ContactSystem& system, const ContactGoal& goal,
+             View<Vec3r> dv, bool solved);
 
+  /// Residual of the last solve, ‖b − A Δv‖₂ / ‖b‖₂.
+  double residual() const { return result_.residual; }
   /// Residual of the last solve, summed over all free vertices [N].
   Vec3d residual_force() const { return residual_force_; }
   /// Work of the contacts on the cloth in the last solve [J].
@@ -39,13 +49,13 @@ class ContactPasses {
  private:
   struct PassResult {
     bool exact = false;   ///< solved to the full tolerance, and gone all the way
-    double residual = 0;  ///< of the linear system, ‖b − A Δv‖₂ / ‖b‖₂
+    double residual = 0;  ///< ‖b − A Δv‖₂ / ‖b‖₂
   };
 
   void start(SubstepContext& step, const ContactSystem& system, const VertexMotion& motion,
              View<const Vec3r> dv, bool solved);
   PassResult correct(SubstepContext& step, const ContactSystem& system, const ContactLine& line,
-                     View<Vec3r> dv, double loose, bool same_matrix);
+                     View<Vec3r> dv, double cg_tolerance, double loose, bool same_matrix);
 
   Array<ContactTerm> terms_;       ///< one for each contact
   Array<ContactTravel> travels_;   ///< (contacts)
@@ -57,6 +67,7 @@ class ContactPasses {
   Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
   LinearSolver solver_;
   LineSearch line_search_;
+  PassResult result_;  ///< of the last pass
   Vec3d residual_force_;
   double work_ = 0;
 };

@@ -1,6 +1,9 @@
 #include "sim/mechanics/implicit.h"
 
+#include <algorithm>
+
 #include "kernels/parallel/parallel.h"
+#include "kernels/strain_limit.h"
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
@@ -81,8 +84,9 @@ struct PredictedMotion {
   ICLOTH_HD void operator()(Index i) const { predicted[i] = -dt * dv[i]; }
 };
 
-/// Tension of the strain that is of second order in the motion since the point of linearisation,
-/// ½ ΔFᵀΔF: the linear solve leaves it out.
+/// Tension that the linear solve leaves out: that of the strain which is of second order in the
+/// motion since the point of linearisation, ½ ΔFᵀΔF, and that of strain beyond the limit, as if the
+/// fabric had not hardened.
 struct LinearizationError {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
@@ -92,20 +96,37 @@ struct LinearizationError {
   View<const Vec3r> dv;
 
   ICLOTH_HD Real operator()(Index i) const {
-    Vec3r start[3], motion[3];
+    Vec3r start[3], at[3], motion[3], end[3];
     for (int a = 0; a < 3; ++a) {
       const Index v = face[i].v[a];
       start[a] = point.start[v];
+      at[a] = point.at[v];
       motion[a] = point.predicted[v] + point.dt * dv[v];
+      end[a] = at[a] + motion[a];
     }
 
     // The stiffness is the one that the linearisation used.
-    const Stiffness k =
-        stiffness_at(fabric[face_fabric[i]], green_strain(face_frame(start, inverse[i].m)));
+    const Fabric& cloth = fabric[face_fabric[i]];
+    const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
     const FaceFrame change = face_frame(motion, inverse[i].m);
-    return Real(0.5) * std::fmax(k.k11 * norm2(change.fu), k.k22 * norm2(change.fv));
+    const Real missed = Real(0.5) * std::fmax(k.k11 * norm2(change.fu), k.k22 * norm2(change.fv));
+
+    // The limit is much stiffer than the fabric. What counts is the strain that it lets pass.
+    const Real passed = missed_limit_strain(cloth, green_strain(face_frame(at, inverse[i].m)),
+                                            green_strain(face_frame(end, inverse[i].m)));
+    return missed + passed * std::fmax(k.k11, k.k22);
   }
 };
+
+/// A linearisation whose start was this many times too wrong is expected to be followed by another
+/// one: the error falls to about a third from one to the next.
+constexpr double kDraftError = 2.5;
+
+/// The goal of a solution at which the system is going to be linearised again.
+ContactGoal draft_of(const ContactGoal& fair) {
+  return {std::max(fair.contact_tolerance, 0.1),
+          std::max(fair.cg_tolerance, std::min(10 * fair.cg_tolerance, 0.03))};
+}
 
 }  // namespace
 
@@ -140,22 +161,33 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   // The springs of open seams are linear, hence the same in every iteration.
   seams_.assemble(step, free_motion, start.v, rule_.h);
 
+  // How much the motion without forces turns the faces says whether one linearisation will do.
+  linearization_error_ = find_linearization_error(context);
+
   // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
   for (int iteration = 1;; ++iteration) {
     assembly_.assemble(context);
     ++step.report.newton_iterations;
-    contacts_.solve(step,
-                    {.matrix = assembly_.matrix(),
-                     .rhs = assembly_.rhs(),
-                     .contacts = proximity.contacts(),
-                     .seams = seams_.couplings(),
-                     .free_motion = free_motion,
-                     .h = rule_.h},
-                    dv_.view(), iteration > 1);
+    const auto solve_and_move = [&](const ContactGoal& goal, bool solved) {
+      contacts_.solve(step,
+                      {.matrix = assembly_.matrix(),
+                       .rhs = assembly_.rhs(),
+                       .contacts = proximity.contacts(),
+                       .seams = seams_.couplings(),
+                       .free_motion = free_motion,
+                       .h = rule_.h},
+                      goal, dv_.view(), solved);
+      move(step);
+      linearization_error_ = find_linearization_error(context);
+    };
 
-    // The candidate shows how much tension the linearisation left out.
-    move(step);
-    linearization_error_ = find_linearization_error(context);
+    // A solution at which the system is going to be linearised again is a draft. The candidate
+    // shows how much tension the linearisation left out.
+    const ContactGoal fair{p.contact_tolerance, p.cg_tolerance};
+    const bool draft =
+        iteration < p.newton_iterations && linearization_error_ > kDraftError * p.newton_tolerance;
+    solve_and_move(draft ? draft_of(fair) : fair, iteration > 1);
+    if (draft && !(linearization_error_ > p.newton_tolerance)) solve_and_move(fair, true);
     if (!(linearization_error_ > p.newton_tolerance)) break;
     if (iteration >= p.newton_iterations) {
       step.report.reach(Limit::newton_iterations);
@@ -163,6 +195,7 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
     }
     linearize_at_candidate(context);
   }
+  step.report.cg_residual = std::max(step.report.cg_residual, contacts_.residual());
 
   // Work is that of the forces as they were linearised last, since these made the motion.
   outer_work_ = assembly_.work(context, dv_.view()) +

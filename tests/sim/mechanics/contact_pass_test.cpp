@@ -115,8 +115,6 @@ struct Net : TestSystem {
   std::vector<Vec3d> solve(double contact_tolerance, double cg_tolerance, StepReport& report) {
     Parameters parameters;
     parameters.proximity.stiffness = kStiffness;
-    parameters.implicit.contact_tolerance = contact_tolerance;
-    parameters.implicit.cg_tolerance = cg_tolerance;
     Topology mesh{};
     mesh.cloth_vertices = count;
     State state{};
@@ -131,7 +129,7 @@ struct Net : TestSystem {
                   .seams = {},
                   .free_motion = free_motion.view(),
                   .h = kStep},
-                 x.view(), false);
+                 {contact_tolerance, cg_tolerance}, x.view(), false);
     std::vector<Vec3d> dv;
     for (const Vec3r& v : x.download()) dv.push_back(convert<double>(v));
     dv.resize(at(count));

@@ -167,6 +167,26 @@ TEST(StrainLimit, StressIsTheSlopeOfItsEnergyAlsoAtEqualStrains) {
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
+TEST(StrainLimit, LinearisationMissesWhatComesInOnTheWay) {
+  const Fabric fabric = limited();
+  const Real limit = fabric.limit_strain, width = Real(kLimitWidth);
+  const auto missed = [&](Real at, Real end) {
+    return missed_limit_strain(fabric, {at, 0, 0}, {end, 0, 0});
+  };
+
+  // Nothing is missed below the limit, nor where all of its stiffness has come in.
+  EXPECT_NEAR(missed(0, limit), 0, 1e-12);
+  EXPECT_NEAR(missed(limit + 2 * width, limit + 5 * width), 0, 1e-6);
+
+  // A face that jumps over the limit was linearised as if there were none: all is missed but for
+  // half the width in which the stiffness comes in.
+  EXPECT_NEAR(missed(0, limit + Real(0.1)), Real(0.1) - width / 2, 1e-6);
+
+  // On the way down, the linearisation goes on pulling where nothing pulls any more.
+  EXPECT_NEAR(missed(limit + 2 * width, 0), limit + width / 2, 1e-6);
+  EXPECT_EQ(missed_limit_strain(fabric_of(cotton()), {0, 0, 0}, {3, 0, 0}), 0);
+}
+
 TEST(StrainLimit, HessianIsTheDerivativeOfTheForceAndPositive) {
   const Fabric fabric = limited();
   const double inverse[4] = {100, 20, 0, 125}, area = 4e-5;
