@@ -16,9 +16,9 @@ import tempfile
 # Triangles of a scene, its camera, and its four moments in seconds.
 SCENES = {
     'scarf': (10000, 'default', (1.0, 2.2, 3.8, 5.8)),
-    'sphere': (6000, 'default', (0.5, 1.5, 2.7, 3.9)),
-    'twisting': (6000, 'default', (0.6, 2.0, 4.0, 5.9)),
-    'funnel': (6000, 'default', (0.2, 0.5, 0.8, 1.1)),
+    'sphere': (20000, 'default', (0.5, 1.5, 2.7, 3.9)),
+    'twisting': (20000, 'default', (0.6, 2.0, 4.0, 5.9)),
+    'funnel': (20000, 'default', (0.2, 0.5, 0.8, 1.1)),
     'dress': (20000, 'default', (0.2, 2.1, 3.6, 4.6)),
     'tiered': (20000, 'default', (0.2, 2.1, 3.6, 6.9)),
     'andy': (20000, 'default', (1.5, 2.6, 5.2, 7.5)),
