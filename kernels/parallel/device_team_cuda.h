@@ -86,20 +86,13 @@ __global__ void __launch_bounds__(kThreads)
 /// Blocks of this kernel that the device runs at once: more could not wait for each other.
 template <class F>
 unsigned resident_blocks(const char* name) {
-  thread_local int known_device = -1;
-  thread_local unsigned blocks = 0;
   int device = 0, processors = 0, per_processor = 0;
   ICLOTH_CUDA_CHECK(name, cudaGetDevice(&device));
-  if (device == known_device) return blocks;
-
-  // The answer depends on the kernel and the device alone, so the runtime is asked once.
   ICLOTH_CUDA_CHECK(name,
                     cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
   ICLOTH_CUDA_CHECK(name, cudaOccupancyMaxActiveBlocksPerMultiprocessor(
                               &per_processor, device_team_kernel<F>, kThreads, 0));
-  known_device = device;
-  blocks = static_cast<unsigned>(processors) * static_cast<unsigned>(per_processor);
-  return blocks;
+  return static_cast<unsigned>(processors) * static_cast<unsigned>(per_processor);
 }
 
 }  // namespace detail

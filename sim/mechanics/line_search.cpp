@@ -16,10 +16,8 @@ struct Two {
   ICLOTH_HD friend Two operator+(Two a, Two b) { return {a.first + b.first, a.second + b.second}; }
 };
 
-}  // namespace
-
 /// The whole search, for one team. Every thread goes through the same trials.
-struct LineSearch::Search {
+struct Search {
   SystemView system;
   ContactLine line;
   View<const Coupling> seams;
@@ -125,6 +123,8 @@ struct LineSearch::Search {
     return dot_double(force, along[k]);
   }
 };
+
+}  // namespace
 
 double LineSearch::go(const SystemView& system, const ContactLine& line, View<const Coupling> seams,
                       const SearchDirection& direction, View<Vec3r> dv, View<Vec3r> residual) {

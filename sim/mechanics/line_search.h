@@ -36,8 +36,6 @@ class LineSearch {
             const SearchDirection& direction, View<Vec3r> dv, View<Vec3r> residual);
 
  private:
-  struct Search;
-
   Array<Vec3r> product_;  ///< A d (cloth vertices)
   Array<Vec3r> along_;    ///< how d moves each contact [m] (contacts)
   Array<Index> closed_;   ///< 0: it stays open on the whole way (contacts)
