@@ -67,7 +67,7 @@ struct Search {
           Vec3r change{}, now{};
           for (int a = 0; a < 4; ++a) {
             const Index i = seam.s.v[a];
-            if (i >= dv.size()) continue;
+            if (i >= product.size()) continue;  // an obstacle's
             change += seam.s.w[a] * direction.d[i];
             now += seam.s.w[a] * dv[i];
           }
