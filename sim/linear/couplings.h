@@ -13,9 +13,16 @@ struct Coupling {
   Symmetric h;
   Vec3r impulse;
 
-  /// Whether it adds anything: a contact that has opened again since its step was laid out does
-  /// not.
+  /// Whether it adds anything: a contact that has opened again since it got its place does not.
   ICLOTH_HD bool acts() const { return h.m[0] + h.m[3] + h.m[5] > 0; }
+
+  /// Σ w v over the corners among the first `vertices`, those of the cloth.
+  ICLOTH_HD Vec3r of_cloth(View<const Vec3r> v, Index vertices) const {
+    Vec3r sum{};
+    for (int a = 0; a < 4; ++a)
+      if (s.v[a] < vertices) sum += s.w[a] * v[s.v[a]];
+    return sum;
+  }
 };
 
 struct CouplingView {

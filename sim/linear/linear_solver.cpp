@@ -42,12 +42,8 @@ struct ConjugateGradients {
     // gather them in a fixed order.
     if (contact.size() > 0) {
       team.for_each(contact.size(), [&](Index c) {
-        Vec3r sum{};
         const Coupling& coupling = system.couplings.list[c];
-        const Stencil& s = coupling.s;
-        for (int a = 0; a < 4; ++a)
-          if (s.v[a] < b.size()) sum += s.w[a] * v[s.v[a]];
-        contact[c] = coupling.h * sum;
+        contact[c] = coupling.h * coupling.of_cloth(v, b.size());
       });
     }
 

@@ -78,10 +78,7 @@ struct CouplingForce {
 
   ICLOTH_HD void operator()(Index k) const {
     const Coupling& c = list[k];
-    Vec3r sum{};
-    for (int a = 0; a < 4; ++a)
-      if (c.s.v[a] < dv.size()) sum += c.s.w[a] * dv[c.s.v[a]];
-    force[k] = c.impulse - c.h * sum;
+    force[k] = c.impulse - c.h * c.of_cloth(dv, dv.size());
   }
 };
 
@@ -237,7 +234,10 @@ ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const Con
                                         .d = d_.view(),
                                         .inverse_diagonal = inverse_diagonal_.view()},
                               Sum{});
-  if (sums.gg == 0) return {.exact = true, .residual = 0};
+  if (sums.gg == 0) {
+    residual_force_ = {};
+    return {.exact = true, .residual = 0};
+  }
 
   // The tolerance is that of the whole system, except while the contacts are still wrong.
   const double whole = cg_tolerance * std::sqrt(sums.bb / sums.gg);

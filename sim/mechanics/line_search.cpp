@@ -64,13 +64,8 @@ struct Search {
         seams.size(), Two{0, 0},
         [&](Index k) {
           const Coupling& seam = seams[k];
-          Vec3r change{}, now{};
-          for (int a = 0; a < 4; ++a) {
-            const Index i = seam.s.v[a];
-            if (i >= product.size()) continue;  // an obstacle's
-            change += seam.s.w[a] * direction.d[i];
-            now += seam.s.w[a] * dv[i];
-          }
+          const Vec3r change = seam.of_cloth(direction.d, product.size());
+          const Vec3r now = seam.of_cloth(dv, product.size());
           return Two{dot_double(change, seam.h * change),
                      dot_double(change, seam.impulse - seam.h * now)};
         },

@@ -165,8 +165,6 @@ TEST(StrainLimit, StressIsTheSlopeOfItsEnergyAlsoAtEqualStrains) {
   }
 }
 
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
 TEST(StrainLimit, LinearisationMissesWhatComesInOnTheWay) {
   const Fabric fabric = limited();
   const Real limit = fabric.limit_strain, width = Real(kLimitWidth);
@@ -186,6 +184,8 @@ TEST(StrainLimit, LinearisationMissesWhatComesInOnTheWay) {
   EXPECT_NEAR(missed(limit + 2 * width, 0), limit + width / 2, 1e-6);
   EXPECT_EQ(missed_limit_strain(fabric_of(cotton()), {0, 0, 0}, {3, 0, 0}), 0);
 }
+
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 TEST(StrainLimit, HessianIsTheDerivativeOfTheForceAndPositive) {
   const Fabric fabric = limited();
