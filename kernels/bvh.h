@@ -3,60 +3,11 @@
 // parallel pass a level. It has no pointers and no atomics, and is the same on every device.
 #pragma once
 
-#include <cfloat>
-
-#if !defined(__CUDACC__) && defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
-#include "kernels/stencil.h"
+#include "kernels/tree_node.h"
 
 namespace icloth::ICLOTH_BUILD {
 
-inline constexpr int kTreeWidth = 8;
 inline constexpr int kTreeLevels = 11;  ///< 8¹¹ > 2³¹ elements
-
-/// A box in single precision, rounded outward where it is made.
-struct Box {
-  float lo[3] = {FLT_MAX, FLT_MAX, FLT_MAX};
-  float hi[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
-};
-
-ICLOTH_HD inline void include(Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k) {
-    a.lo[k] = b.lo[k] < a.lo[k] ? b.lo[k] : a.lo[k];
-    a.hi[k] = b.hi[k] > a.hi[k] ? b.hi[k] : a.hi[k];
-  }
-}
-
-/// The smallest box around two points, padded; rounding goes outward.
-ICLOTH_HD inline Box swept_box(Vec3r a, Vec3r b, Real pad) {
-  const Real p[3] = {a.x, a.y, a.z}, q[3] = {b.x, b.y, b.z};
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    const Real low = (p[k] < q[k] ? p[k] : q[k]) - pad, high = (p[k] > q[k] ? p[k] : q[k]) + pad;
-    // Three float roundings happen at most; 4 ulp outward cover them.
-    box.lo[k] = static_cast<float>(low) - 2.4e-7f * std::fabs(static_cast<float>(low)) - FLT_MIN;
-    box.hi[k] = static_cast<float>(high) + 2.4e-7f * std::fabs(static_cast<float>(high)) + FLT_MIN;
-  }
-  return box;
-}
-
-/// The boxes of eight children, stored coordinate by coordinate so that one vector comparison tests
-/// all of them.
-struct TreeNode {
-  float lo[3][kTreeWidth], hi[3][kTreeWidth];
-};
-
-ICLOTH_HD inline Box child_box(const TreeNode& node, int child) {
-  Box box;
-  for (int k = 0; k < 3; ++k) box.lo[k] = node.lo[k][child], box.hi[k] = node.hi[k][child];
-  return box;
-}
-
-ICLOTH_HD inline void set_child(TreeNode& node, int child, const Box& box) {
-  for (int k = 0; k < 3; ++k) node.lo[k][child] = box.lo[k], node.hi[k][child] = box.hi[k];
-}
 
 /// A tree as kernels see it.
 struct TreeView {
@@ -66,70 +17,78 @@ struct TreeView {
   int levels = 0;  ///< 0: empty tree
 };
 
-/// Compares a box with all children of a node: bit c of the result is set where child c overlaps
-/// it. This is the plain version, for devices and for processors without the vectors below; not
-/// even a number that is not finite makes the two differ.
-ICLOTH_HD inline unsigned overlapping_children_one_by_one(const TreeNode& node, const Box& box) {
-  unsigned mask = 0;
-  for (int c = 0; c < kTreeWidth; ++c) {
-    bool apart = false;
-    for (int k = 0; k < 3; ++k)
-      apart = apart | (node.lo[k][c] > box.hi[k]) | (box.lo[k] > node.hi[k][c]);
-    mask |= static_cast<unsigned>(!apart) << c;
+/// The query of one element.
+struct OneElement {
+  static constexpr int kWidth = 1;
+  MovingBox box;
+
+  OneElement() = default;
+  ICLOTH_HD explicit OneElement(const MovingBox& own) : box(own) {}
+  ICLOTH_HD void set(int, const MovingBox& own) { box = own; }
+  ICLOTH_HD const MovingBox& hull() const { return box; }
+  ICLOTH_HD const MovingBox& member(int) const { return box; }
+  ICLOTH_HD unsigned all() const { return 1; }
+  /// The members that may meet a node, all of which a search of the hull has found already.
+  ICLOTH_HD unsigned meeting(const MovingBox&) const { return 1; }
+};
+
+/// The query of up to eight elements that lie near each other, which descend the tree together.
+class EightElements {
+ public:
+  static constexpr int kWidth = kTreeWidth;
+
+  ICLOTH_HD EightElements() {
+    for (int c = 0; c < kWidth; ++c) set_child(boxes_, c, {});
   }
-  return mask;
-}
-
-/// The same in vector registers: eight children in one comparison with AVX, four without. It is
-/// written in intrinsics because g++ 12 compiles the plain loop to one comparison a number.
-ICLOTH_HD inline unsigned overlapping_children(const TreeNode& node, const Box& box) {
-#if defined(__CUDACC__) || !defined(__SSE2__)
-  return overlapping_children_one_by_one(node, box);
-
-#elif defined(__AVX__)
-  // A child is apart where it lies above or below in one of the axes.
-  __m256 apart = _mm256_setzero_ps();
-  for (int k = 0; k < 3; ++k) {
-    const __m256 above =
-        _mm256_cmp_ps(_mm256_loadu_ps(node.lo[k]), _mm256_set1_ps(box.hi[k]), _CMP_GT_OQ);
-    const __m256 below =
-        _mm256_cmp_ps(_mm256_set1_ps(box.lo[k]), _mm256_loadu_ps(node.hi[k]), _CMP_GT_OQ);
-    apart = _mm256_or_ps(apart, _mm256_or_ps(above, below));
+  ICLOTH_HD void set(int member, const MovingBox& box) {
+    set_child(boxes_, member, box);
+    hull_.include(box);
+    all_ |= 1u << member;
   }
-  return ~static_cast<unsigned>(_mm256_movemask_ps(apart)) & 0xFFu;
+  ICLOTH_HD const MovingBox& hull() const { return hull_; }
+  ICLOTH_HD MovingBox member(int c) const { return child_box(boxes_, c); }
+  ICLOTH_HD unsigned all() const { return all_; }
+  ICLOTH_HD unsigned meeting(const MovingBox& node) const { return meeting_children(boxes_, node); }
 
+ private:
+  TreeNode boxes_;
+  MovingBox hull_;
+  unsigned all_ = 0;
+};
+
+/// A processor saves most of the descent by queries of eight elements. A device has a thread for
+/// each element instead, of which it needs many.
+#if defined(__CUDACC__)
+using Neighbours = OneElement;
 #else
-  // The same for four children at a time.
-  unsigned mask = 0;
-  for (int half = 0; half < kTreeWidth; half += 4) {
-    __m128 apart = _mm_setzero_ps();
-    for (int k = 0; k < 3; ++k) {
-      const __m128 above = _mm_cmpgt_ps(_mm_loadu_ps(node.lo[k] + half), _mm_set1_ps(box.hi[k]));
-      const __m128 below = _mm_cmpgt_ps(_mm_set1_ps(box.lo[k]), _mm_loadu_ps(node.hi[k] + half));
-      apart = _mm_or_ps(apart, _mm_or_ps(above, below));
-    }
-    mask |= (~static_cast<unsigned>(_mm_movemask_ps(apart)) & 0xFu) << half;
-  }
-  return mask;
+using Neighbours = EightElements;
 #endif
-}
 
-/// The number of the lowest bit that is set in a mask that is not 0.
-ICLOTH_HD inline int lowest_bit(unsigned mask) {
-#if defined(__CUDA_ARCH__)
-  return __ffs(static_cast<int>(mask)) - 1;
-#else
-  return __builtin_ctz(mask);
-#endif
-}
-
-/// Calls found(leaf, element) for every leaf after `after_leaf` whose box overlaps. Returns the
-/// number of boxes that were compared with.
-template <class Found>
-ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_leaf,
+/// Calls found(member, element) for every member of a query and every leaf that does not stay apart
+/// from it; member m leaves out the leaves up to number after_leaf + m. Returns the number of boxes
+/// that were compared with.
+template <class Query, class Found>
+ICLOTH_HD Index query_tree(const TreeView& tree, const Query& query, Index after_leaf,
                            const Found& found) {
   if (tree.levels == 0) return 0;
   Index tests = 0;
+
+  // Each member of the query is compared with all leaves of a node at once.
+  const auto visit_leaves = [&](Index node, unsigned members) {
+    for (; members != 0; members &= members - 1) {
+      const int member = lowest_bit(members);
+      tests += kTreeWidth;
+      unsigned mask = meeting_children(tree.nodes[node], query.member(member));
+      for (; mask != 0; mask &= mask - 1) {
+        const Index leaf = node * kTreeWidth + lowest_bit(mask);
+        if (leaf > after_leaf + member) found(member, tree.items[leaf]);
+      }
+    }
+  };
+  if (tree.levels == 1) {
+    visit_leaves(0, query.all());
+    return tests;
+  }
 
   // The traversal is depth first with a stack of its own. A level leaves at most kTreeWidth − 1
   // siblings waiting, which bounds the stack.
@@ -140,24 +99,23 @@ ICLOTH_HD Index query_tree(const TreeView& tree, const Box& box, Index after_lea
   int depth = 0;
   stack[depth++] = {tree.levels - 1, 0};
 
-  // Each node on the stack tests all of its children at once.
+  // Each node on the stack tests all of its children at once, with the hull of the query.
   while (depth > 0) {
     const Entry top = stack[--depth];
     tests += kTreeWidth;
     const TreeNode& node = tree.nodes[tree.level_first[top.level] + top.node];
-    unsigned mask = overlapping_children(node, box);
-    while (mask != 0) {
-      const Index child = top.node * kTreeWidth + lowest_bit(mask);
-      mask &= mask - 1;
+    unsigned mask = meeting_children(node, query.hull());
+    for (; mask != 0; mask &= mask - 1) {
+      const int c = lowest_bit(mask);
+      const Index child = top.node * kTreeWidth + c;
 
-      // Leaves are reported, and inner nodes go on the stack unless all leaves below them come
-      // before `after_leaf`.
-      if (top.level == 0) {
-        if (child > after_leaf) found(child, tree.items[child]);
-      } else {
-        const Index last_leaf = ((child + 1) << (3 * top.level)) - 1;
-        if (last_leaf > after_leaf) stack[depth++] = {top.level - 1, child};
-      }
+      // Nodes all of whose leaves are left out are passed by.
+      const Index last_leaf = ((child + 1) << (3 * top.level)) - 1;
+      if (last_leaf <= after_leaf) continue;
+      if (top.level > 1)
+        stack[depth++] = {top.level - 1, child};
+      else
+        visit_leaves(child, query.meeting(child_box(node, c)));
     }
   }
   return tests;

@@ -145,7 +145,7 @@ struct StillCandidates {
   MovingBoxes first, second;
   ICLOTH_HD bool operator()(Index i) const {
     const Pair p = pair[i];
-    return !left(p) && overlap(first[p.a], second[p.b]) && !stay_apart(first.at(p.a), second, p.b);
+    return !left(p) && !stay_apart(first.at(p.a), second.at(p.b));
   }
 };
 

@@ -1,8 +1,8 @@
 // The input and the output of the finders of candidate pairs.
 #pragma once
 
+#include "kernels/box.h"
 #include "kernels/parallel/parallel.h"
-#include "sim/collision/moving_boxes.h"
 #include "sim/state/topology.h"
 
 namespace icloth::ICLOTH_BUILD {

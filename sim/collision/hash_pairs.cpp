@@ -173,7 +173,7 @@ struct EdgePairs {
   }
   ICLOTH_HD bool allowed(Index a, Index b) const {
     return a < cloth && !share_vertex(edge[a], edge[b]) &&
-           !stay_apart(box.first.at(a), box.first, b);
+           !stay_apart(box.first.at(a), box.first.at(b));
   }
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b}; }
 };
@@ -200,7 +200,7 @@ struct VertexFacePairs {
     if (a >= vertices || b < vertices) return false;
     const Index f = b - vertices;
     return (a < cloth_vertices || f < cloth_faces) && !has_vertex(face[f], a) &&
-           !stay_apart(box.first.at(a), box.second, f);
+           !stay_apart(box.first.at(a), box.second.at(f));
   }
   ICLOTH_HD Pair pair(Index a, Index b) const { return {a, b - vertices}; }
 };

@@ -10,13 +10,14 @@ struct UniteBoxes {
   }
 };
 
-/// The items of a tree: a list of elements, or the range from `first` on.
+/// The elements to sort: a list of elements, or the range from `first` on.
 struct Items {
   View<const Index> list;
   Index first;
   ICLOTH_HD Index operator[](Index i) const { return list.data() == nullptr ? first + i : list[i]; }
 };
 
+/// The box of the whole motion of an item.
 struct BoxAt {
   MovingBoxes box;
   Items items;
@@ -52,7 +53,7 @@ struct FitLeaves {
   ICLOTH_HD void operator()(Index n) const {
     for (int c = 0; c < kTreeWidth; ++c) {
       const Index leaf = n * kTreeWidth + c;
-      set_child(node[n], c, leaf < item.size() ? box[item[leaf]] : Box{});
+      set_child(node[n], c, leaf < item.size() ? box.at(item[leaf]) : MovingBox{});
     }
   }
 };
@@ -65,9 +66,9 @@ struct FitLevel {
   ICLOTH_HD void operator()(Index n) const {
     for (int c = 0; c < kTreeWidth; ++c) {
       const Index child = n * kTreeWidth + c;
-      Box b;
+      MovingBox b;
       if (child < below_count)
-        for (int k = 0; k < kTreeWidth; ++k) include(b, child_box(node[below + child], k));
+        for (int k = 0; k < kTreeWidth; ++k) b.include(child_box(node[below + child], k));
       set_child(node[level + n], c, b);
     }
   }
@@ -75,40 +76,51 @@ struct FitLevel {
 
 }  // namespace
 
+template <class Items>
+void CurveOrder::sort_items(const MovingBoxes& boxes, const Items& items, Index count) {
+  elements_.resize(count);
+  codes_.resize(count);
+  if (count == 0) return;
+  const Box bounds = reduce("broad_phase.bounds", count, Box{}, BoxAt{boxes, items}, UniteBoxes{});
+  for_each("broad_phase.morton", count,
+           MortonCodes{boxes, items, codes_.view(), elements_.view(), bounds});
+  sort_by_key("broad_phase.sort", codes_.view(), elements_.view(), 30);
+}
+
+void CurveOrder::sort(const MovingBoxes& boxes, Index first) {
+  sort_items(boxes, Items{{}, first}, boxes.size() - first);
+}
+
+void CurveOrder::sort(const MovingBoxes& boxes, View<const Index> elements) {
+  sort_items(boxes, Items{elements, 0}, elements.size());
+}
+
 TreeView Tree::view() const {
   TreeView t;
   t.nodes = nodes_.view();
-  t.items = items_.view();
+  t.items = leaves_.view();
   t.levels = levels_;
   for (int l = 0; l < levels_; ++l) t.level_first[l] = level_first_[l];
   return t;
 }
 
 void Tree::build(const MovingBoxes& boxes, Index first) {
-  sort(boxes, Items{{}, first}, boxes.size() - first);
+  leaves_.sort(boxes, first);
+  make_levels(boxes);
 }
 
 void Tree::build(const MovingBoxes& boxes, View<const Index> elements) {
-  sort(boxes, Items{elements, 0}, elements.size());
+  leaves_.sort(boxes, elements);
+  make_levels(boxes);
 }
 
-template <class Items>
-void Tree::sort(const MovingBoxes& boxes, const Items& items, Index n) {
-  items_.resize(n);
+void Tree::make_levels(const MovingBoxes& boxes) {
   levels_ = 0;
-  if (n == 0) return;
-  codes_.resize(n);
-
-  // Items sorted along the Morton curve of their centres are near each other, so that nodes are
-  // small.
-  const Box bounds = reduce("broad_phase.bounds", n, Box{}, BoxAt{boxes, items}, UniteBoxes{});
-  for_each("broad_phase.morton", n,
-           MortonCodes{boxes, items, codes_.view(), items_.view(), bounds});
-  sort_by_key("broad_phase.sort", codes_.view(), items_.view(), 30);
+  if (empty()) return;
 
   // Each level has an eighth of the nodes of the one below, down to a single root.
   Index total = 0;
-  for (Index count = n; levels_ == 0 || count > 1;) {
+  for (Index count = leaves_.size(); levels_ == 0 || count > 1;) {
     count = (count + kTreeWidth - 1) / kTreeWidth;
     level_first_[levels_] = total;
     level_count_[levels_++] = count;
@@ -120,7 +132,7 @@ void Tree::sort(const MovingBoxes& boxes, const Items& items, Index n) {
 
 void Tree::refit(const MovingBoxes& boxes) {
   if (levels_ == 0) return;
-  for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, items_.view(), nodes_.view()});
+  for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, leaves_.view(), nodes_.view()});
   for (int l = 1; l < levels_; ++l)
     for_each("broad_phase.refit", level_count_[l],
              FitLevel{nodes_.view(), level_first_[l - 1], level_count_[l - 1], level_first_[l]});

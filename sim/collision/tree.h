@@ -1,30 +1,49 @@
-// A bounding volume tree over the boxes of whole motions (kernels/bvh.h).
+// A bounding volume tree over the moving boxes of elements (kernels/bvh.h).
 #pragma once
 
+#include "kernels/bvh.h"
 #include "kernels/parallel/parallel.h"
-#include "sim/collision/moving_boxes.h"
 
 namespace icloth::ICLOTH_BUILD {
 
+/// Elements along the Morton curve of the centres of their boxes, where neighbours are near each
+/// other.
+class CurveOrder {
+ public:
+  /// Sorts the elements first, first + 1 … boxes.size() − 1.
+  void sort(const MovingBoxes& boxes, Index first);
+  /// Sorts the listed elements.
+  void sort(const MovingBoxes& boxes, View<const Index> elements);
+  Index size() const { return elements_.size(); }
+  View<const Index> view() const { return elements_.view(); }
+
+ private:
+  template <class Items>
+  void sort_items(const MovingBoxes& boxes, const Items& items, Index count);
+
+  Array<Index> elements_;
+  Array<std::uint64_t> codes_;
+};
+
 class Tree {
  public:
-  /// Builds the tree over the elements first, first + 1 … boxes.size() − 1, sorted anew (in the
-  /// Morton order of their boxes' centres).
+  /// Builds the tree over the elements first, first + 1 … boxes.size() − 1, sorted anew.
   void build(const MovingBoxes& boxes, Index first);
   /// Builds the tree over the listed elements alone.
   void build(const MovingBoxes& boxes, View<const Index> elements);
   /// Takes new boxes and keeps the order of the leaves.
   void refit(const MovingBoxes& boxes);
-  bool empty() const { return items_.size() == 0; }
+  bool empty() const { return leaves_.size() == 0; }
   TreeView view() const;
+  /// The elements in the order of the leaves.
+  const CurveOrder& leaves() const { return leaves_; }
 
  private:
-  template <class Items>
-  void sort(const MovingBoxes& boxes, const Items& items, Index count);
+  /// Lays the levels out over the leaves and fits them.
+  void make_levels(const MovingBoxes& boxes);
 
-  Array<Index> items_;  ///< element numbers in leaf order
+  CurveOrder leaves_;
   Array<TreeNode> nodes_;
-  Array<std::uint64_t> codes_;
   Index level_first_[kTreeLevels] = {};
   Index level_count_[kTreeLevels] = {};
   int levels_ = 0;

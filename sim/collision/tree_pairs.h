@@ -23,9 +23,11 @@ class TreePairs {
 
  private:
   template <class Query>
-  void run(const char* name, Index count, const Query& query, Array<Pair>& list, Candidates& out);
+  void run(const char* name, Index elements, const Query& query, Array<Pair>& list,
+           Candidates& out);
 
   Tree cloth_faces_, obstacle_faces_, cloth_edges_, obstacle_edges_;
+  CurveOrder cloth_vertices_, obstacle_vertices_;
   Tree dirty_face_tree_;
   Array<Index> dirty_vertices_, dirty_faces_, dirty_edges_;
   Array<Pair> found_;  ///< one query's results

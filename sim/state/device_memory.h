@@ -1,7 +1,7 @@
 // The memory of a simulation (sim/state/memory.h) where one build computes.
 #pragma once
 
-#include "kernels/bvh.h"
+#include "kernels/box.h"
 #include "kernels/stencil.h"
 #include "kernels/yarn_friction.h"
 #include "sim/state/memory.h"

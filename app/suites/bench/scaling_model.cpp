@@ -85,7 +85,7 @@ PerStage least_bytes(const MeshCounts& mesh, const StepReport& report) {
   // boxes still hold the paths.
   const double elements = mesh.faces + mesh.edges;
   const double boxes = mesh.vertices * (2 * kPosition + kBox) + 3 * kIndex * mesh.faces +
-                       2 * kIndex * mesh.edges + elements * (kBox + kBox + kTree * kBox);
+                       2 * kIndex * mesh.edges + elements * 2 * (kBox + kTree * kBox);
   at(bytes, Stage::broad_phase) =
       attempts * (boxes + kPair * pairs + mesh.vertices * (kPosition + kBox));
 
@@ -118,7 +118,7 @@ PerStage array_bytes(const MeshCounts& mesh, const StepReport& report) {
 
   const double elements = mesh.faces + mesh.edges;
   at(bytes, Stage::broad_phase) =
-      kBox * (mesh.vertices + elements) + elements * (kTree * kBox + kIndex) + kPair * pairs;
+      2 * kBox * (mesh.vertices + elements + kTree * elements) + kIndex * elements + kPair * pairs;
   at(bytes, Stage::impact_zones) = kConstraint * number(report.impacts_first) + n * (kIndex + 1);
   at(bytes, Stage::other) = 6 * kPosition * mesh.vertices + kFaceRest * mesh.cloth_faces;
   return bytes;

@@ -14,7 +14,7 @@
 
 #include "app/suites/bench/power_fit.h"
 #include "app/suites/bench/scaling_model.h"
-#include "kernels/bvh.h"
+#include "kernels/box.h"
 #include "kernels/contact.h"
 #include "kernels/impact.h"
 #include "kernels/zones/zone_problem.h"
