@@ -63,9 +63,17 @@ ICLOTH_HD void keep_closer(SegmentPoints<T>& best, Vec3<T> gap, T s, T t) {
 
 }  // namespace detail
 
+/// What a search is for. Most pairs that are looked at have no interior solution, and the boundary
+/// takes longer than the rest.
+enum class ClosestPoints {
+  anywhere,
+  interior_only,  ///< where `interior` comes out false, nothing else is set
+};
+
 /// Closest point of the triangle a b c to p.
 template <class T>
-ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> b, Vec3<T> c) {
+ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> b, Vec3<T> c,
+                                                  ClosestPoints wanted = ClosestPoints::anywhere) {
   const Vec3<T> e1 = b - a, e2 = c - a, q = p - a, n = cross(e1, e2);
   const T nn = norm2(n);
   TrianglePoint<T> best;
@@ -81,6 +89,8 @@ ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> 
     best = {{w0, w1 / nn, w2 / nn}, height * (height / nn), true};
     if (nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
     best.distance2 = norm2(q - best.w[1] * e1 - best.w[2] * e2);
+  } else if (wanted == ClosestPoints::interior_only) {
+    return best;
   }
 
   // Otherwise the closest point lies on an edge, or the interior solution has to prove itself
@@ -93,7 +103,8 @@ ICLOTH_HD TrianglePoint<T> closest_point_triangle(Vec3<T> p, Vec3<T> a, Vec3<T> 
 
 /// Closest points of the segments a0 a1 and b0 b1.
 template <class T>
-ICLOTH_HD SegmentPoints<T> closest_points_segments(Vec3<T> a0, Vec3<T> a1, Vec3<T> b0, Vec3<T> b1) {
+ICLOTH_HD SegmentPoints<T> closest_points_segments(Vec3<T> a0, Vec3<T> a1, Vec3<T> b0, Vec3<T> b1,
+                                                   ClosestPoints wanted = ClosestPoints::anywhere) {
   const Vec3<T> e1 = a1 - a0, e2 = b1 - b0, q = b0 - a0, n = cross(e1, e2);
   const T nn = norm2(n);
   SegmentPoints<T> best;
@@ -106,6 +117,8 @@ ICLOTH_HD SegmentPoints<T> closest_points_segments(Vec3<T> a0, Vec3<T> a1, Vec3<
     best = {s / nn, t / nn, height * (height / nn), true};
     if (nn > kIllConditioned2<T> * norm2(e1) * norm2(e2)) return best;
     best.distance2 = norm2(q + best.t * e2 - best.s * e1);
+  } else if (wanted == ClosestPoints::interior_only) {
+    return best;
   }
 
   // The distance is convex over the square of (s,t), so without an interior minimum there is one on

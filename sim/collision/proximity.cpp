@@ -176,8 +176,8 @@ struct FindVertexFace {
     const Pair pair = candidates[i];
     const Int3 f = face[pair.b];
     if (maker.boxes_apart(&pair.a, 1, f.v, 3)) return;
-    const auto closest =
-        closest_point_triangle(maker.x[pair.a], maker.x[f.v[0]], maker.x[f.v[1]], maker.x[f.v[2]]);
+    const auto closest = closest_point_triangle(maker.x[pair.a], maker.x[f.v[0]], maker.x[f.v[1]],
+                                                maker.x[f.v[2]], ClosestPoints::interior_only);
     if (!closest.interior) return;
 
     // The weights give the gap vector from the face to the vertex.
@@ -203,8 +203,8 @@ struct FindEdgeEdge {
     const Pair pair = candidates[i];
     const Int2 p = edge[pair.a], q = edge[pair.b];
     if (maker.boxes_apart(p.v, 2, q.v, 2)) return;
-    const auto closest =
-        closest_points_segments(maker.x[p.v[0]], maker.x[p.v[1]], maker.x[q.v[0]], maker.x[q.v[1]]);
+    const auto closest = closest_points_segments(maker.x[p.v[0]], maker.x[p.v[1]], maker.x[q.v[0]],
+                                                 maker.x[q.v[1]], ClosestPoints::interior_only);
     if (!closest.interior) return;
 
     // The weights give the gap vector from the first edge to the second one.

@@ -56,6 +56,14 @@ void check_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
   // The grid lies at most half a cell of the longest edge away.
   EXPECT_GE(std::sqrt(x.distance2),
             sampled - std::max({norm(b - a), norm(c - a), norm(c - b)}) / 40);
+
+  // The short search gives the same answer where that is inside.
+  const auto inside = closest_point_triangle(p, a, b, c, ClosestPoints::interior_only);
+  EXPECT_EQ(inside.interior, x.interior);
+  if (x.interior) {
+    EXPECT_EQ(inside.distance2, x.distance2);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(inside.w[k], x.w[k]);
+  }
 }
 
 void check_segments(Vec3d a0, Vec3d a1, Vec3d b0, Vec3d b1) {
@@ -68,6 +76,15 @@ void check_segments(Vec3d a0, Vec3d a1, Vec3d b0, Vec3d b1) {
   EXPECT_LE(std::sqrt(x.distance2), sampled + 1e-12 * size);
   EXPECT_GE(std::sqrt(x.distance2), sampled - (norm(a1 - a0) + norm(b1 - b0)) / 80);
   EXPECT_EQ(x.interior, x.s > 0 && x.s < 1 && x.t > 0 && x.t < 1);
+
+  // The short search gives the same answer where that is inside.
+  const auto inside = closest_points_segments(a0, a1, b0, b1, ClosestPoints::interior_only);
+  EXPECT_EQ(inside.interior, x.interior);
+  if (x.interior) {
+    EXPECT_EQ(inside.distance2, x.distance2);
+    EXPECT_EQ(inside.s, x.s);
+    EXPECT_EQ(inside.t, x.t);
+  }
 }
 
 TEST(ClosestPointTriangle, LiesOnTheFaceAnEdgeOrAVertex) {
