@@ -40,6 +40,9 @@ struct CouplingView {
       f(entries[k] / 4, list[entries[k] / 4].s.w[entries[k] % 4]);
   }
 
+  /// Whether a vertex is a corner of any coupling, whatever that adds.
+  ICLOTH_HD bool hold(Index i) const { return list.size() > 0 && first[i] < first[i + 1]; }
+
   ICLOTH_HD bool touch(Index i) const {
     bool found = false;
     of_vertex(i, [&](Index c, Real) { found = found || list[c].acts(); });

@@ -101,6 +101,7 @@ struct FinishRow {
   View<const Vec3r> rhs, residual;  ///< b and b − A Δv without contacts
   View<Vec3r> g, d;  ///< b − A Δv with contacts; where its correction starts, zero
   View<Mat3r> inverse_diagonal;
+  bool same_matrix;  ///< as in the pass before: contacts have kept their places since
 
   ICLOTH_HD RowSums operator()(Index i) const {
     d[i] = Vec3r{};
@@ -110,6 +111,12 @@ struct FinishRow {
       g[i] = Vec3r{};
       inverse_diagonal[i] = Mat3r{};
       return {};
+    }
+
+    // A row without contacts stays as the first pass left it.
+    if (same_matrix && !couplings.hold(i)) {
+      g[i] = residual[i];
+      return {dot_double(rhs[i], rhs[i]), dot_double(g[i], g[i]), convert<double>(g[i])};
     }
 
     // The contacts at the vertex add their impulses, and their blocks to its diagonal block.
@@ -232,7 +239,8 @@ ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const Con
                                         .residual = residual_.view(),
                                         .g = g_.view(),
                                         .d = d_.view(),
-                                        .inverse_diagonal = inverse_diagonal_.view()},
+                                        .inverse_diagonal = inverse_diagonal_.view(),
+                                        .same_matrix = same_matrix},
                               Sum{});
   if (sums.gg == 0) {
     residual_force_ = {};
