@@ -64,6 +64,7 @@ void SewingSimulator::start_again() {
   sewn_ = scene_;
   world_ = make_world(*scene_);
   solver_ = make_(build_, scene_);
+  solver_->report_energies(reports_energies_);
   vertex_.resize(at(world_.vertices));
   for (std::size_t v = 0; v < vertex_.size(); ++v) vertex_[v] = static_cast<Index>(v);
   original_ = vertex_;
@@ -77,6 +78,11 @@ void SewingSimulator::take(WeldedScene welded, std::unique_ptr<Simulator> solver
   sewn_ = std::make_shared<const Scene>(std::move(welded.scene));
   world_ = std::move(world);
   solver_ = std::move(solver);
+}
+
+void SewingSimulator::report_energies(bool on) {
+  reports_energies_ = on;
+  solver_->report_energies(on);
 }
 
 /// Whether all pairs of a seam are near enough to be welded.
@@ -107,6 +113,7 @@ bool SewingSimulator::weld(std::size_t seam, StepReport& report) {
 
     // The new solver goes on with the parameters and the memory of the old one.
     auto solver = make_(build_, std::make_shared<const Scene>(welded->scene));
+    solver->report_energies(reports_energies_);
     solver->set_parameters(solver_->parameters());
     solver->restore(weld_memory(state, world_, *welded, world, positions));
     const double energy = solver_->measure(report);

@@ -33,6 +33,7 @@ class SewingSimulator final : public Simulator {
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
   double measure(StepReport& report) override { return solver_->measure(report); }
+  void report_energies(bool on) override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
   std::vector<HandleState> handles() const override { return solver_->handles(); }
@@ -55,6 +56,7 @@ class SewingSimulator final : public Simulator {
   std::unique_ptr<Simulator> solver_;   ///< of sewn_
   std::vector<Index> vertex_;           ///< number in sewn_ of each vertex of scene_
   std::vector<Index> original_;         ///< first vertex of scene_ of each vertex of sewn_
+  bool reports_energies_ = true;
   std::vector<SeamProgress> progress_;  ///< of each seam
   std::vector<bool> told_closed_;       ///< seams whose closing was noted
   std::vector<bool> told_stuck_;        ///< seams that were named as stuck

@@ -115,6 +115,11 @@ void Solver::grow_reserve() {
   reserved_ = memory::reserved();
 }
 
+void Solver::report_energies(bool on) {
+  reports_energies_ = on;
+  energy_.reset();
+}
+
 void Solver::use_device() const { select_device(device_); }
 
 icloth::Build Solver::build() const {
@@ -204,8 +209,9 @@ void Solver::accept_substep(StepReport& report, double dt) {
   proximity_.keep_friction(state_, parameters_, real(dt));
   pinch_.take_back(state_, parameters_);
   implicit_.finish_substep(state_);
-  work_ += implicit_.work();
   advance_seams(mesh_, parameters_, state_, real(dt));
+  if (!reports_energies_) return;
+  work_ += implicit_.work();
   if (impact_zones_.corrected()) work_ += zone_work(dt);
 }
 
@@ -247,7 +253,7 @@ int Solver::travel_level(StepReport& report) const {
 void Solver::save_start() {
   start_.copy_from(state_);
   work_ = 0;
-  if (!energy_)
+  if (reports_energies_ && !energy_)
     energy_ = statistics_of(implicit_.forces(), {mesh_, parameters_, state_.x1.view()},
                             state_.mass.view(), state_.v.view())
                   .energy();

@@ -38,6 +38,7 @@ class Solver final : public Simulator {
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
   double measure(StepReport& report) override;
+  void report_energies(bool on) override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
   std::vector<HandleState> handles() const override;
@@ -97,6 +98,7 @@ class Solver final : public Simulator {
   /// Device memory that the pool had when it was last looked at [bytes], grow_reserve.
   std::uint64_t reserved_ = 0;
   double free_mass_ = 0;  ///< of the vertices that are not pinned [kg], set_parameters
+  bool reports_energies_ = true;
   /// Energy of the state where it is known [J], step. It follows from memory and parameters.
   std::optional<double> energy_;
   double work_ = 0;           ///< on the cloth in the step so far [J], accept_substep

@@ -107,6 +107,7 @@ void Solver::finish_step(StepReport& report) {
 /// Energies and hash are those of the state that was reached, or kept.
 void Solver::report_end_state(StepReport& report) {
   const double energy = measure(report);
+  if (!reports_energies_) return;
   if (report.accepted) report.energy_balance = energy - *energy_ - work_;
   energy_ = energy;
 }
@@ -116,7 +117,10 @@ double Solver::measure(StepReport& report) {
   report.state_hash = hash_state(state_);
   report.pinched = pinch_.vertices(state_);
   report_seams(mesh_, state_, report);
-  return report_state(implicit_.forces(), mesh_, state_, parameters_, report);
+  if (reports_energies_)
+    return report_state(implicit_.forces(), mesh_, state_, parameters_, report);
+  report_extremes(mesh_, state_, report);
+  return 0;
 }
 
 /// Time that no stage has measured counts as the rest of the step.
@@ -147,7 +151,7 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 }
 
 SubstepContext Solver::substep(StepReport& report, double start, double dt) {
-  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start};
+  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start, reports_energies_};
 }
 
 /// Cloth that was let go from a body is pushed out of it instead of being kept away from it.

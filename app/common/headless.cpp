@@ -163,6 +163,7 @@ HeadlessResult run_headless(const HeadlessJob& job) {
   if (result.start_refused) return result;
 
   const std::unique_ptr<Simulator> simulator = make_simulator(job.build, job.scene);
+  simulator->report_energies(job.energies);
   ScriptedInput script(*job.scene);
 
   // A run that is resumed has made its first steps already.

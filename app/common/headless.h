@@ -23,6 +23,7 @@ struct HeadlessJob {
   /// The clock goes on over refused steps (Simulator::pass_over); those of a recording that did so
   /// are passed over in any case.
   bool pass_over = false;
+  bool energies = true;        ///< reports have energies (Simulator::report_energies)
   bool quiet = false;          ///< no progress line
   bool interruptible = false;  ///< Ctrl-C ends it after the step that is being made
 

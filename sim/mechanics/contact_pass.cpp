@@ -188,8 +188,9 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system,
     couplings_.gather(contacts, terms_.view(), step.mesh.cloth_vertices, system.seams);
     result_ = correct(step, system, line, dv, goal.cg_tolerance, loose, pass > 0);
   }
-  work_ = reduce("implicit.contact_work", contacts.size(), 0.0,
-                 TermWork{law, motion, contacts, travels_.view(), dv, terms_.view()}, Sum{});
+  if (step.sums_up_work)
+    work_ = reduce("implicit.contact_work", contacts.size(), 0.0,
+                   TermWork{law, motion, contacts, travels_.view(), dv, terms_.view()}, Sum{});
 }
 
 /// Prepares for the passes: what is left of the system without contacts at the Δv they start from.

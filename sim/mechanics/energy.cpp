@@ -28,6 +28,11 @@ struct MotionEnergy {
   }
 };
 
+struct Speed2 {
+  View<const Vec3r> v;
+  ICLOTH_HD double operator()(Index i) const { return norm2(convert<double>(v[i])); }
+};
+
 /// Finaliser of MurmurHash3 (Appleby, public domain): spreads every input bit over the word.
 ICLOTH_HD std::uint64_t mix(std::uint64_t h) {
   h ^= h >> 33;
@@ -96,6 +101,12 @@ double report_state(const Forces& forces, const Topology& mesh, const State& sta
   report.max_strain = statistics.strain;
   report.max_speed = statistics.speed;
   return statistics.energy();
+}
+
+void report_extremes(const Topology& mesh, const State& state, StepReport& report) {
+  report.max_strain = largest_strain(mesh, state.x1.view());
+  report.max_speed = std::sqrt(
+      reduce("statistics.motion", mesh.cloth_vertices, 0.0, Speed2{state.v.view()}, Max{}));
 }
 
 std::uint64_t hash_state(const State& state) {

@@ -198,8 +198,9 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   step.report.cg_residual = std::max(step.report.cg_residual, contacts_.residual());
 
   // Work is that of the forces as they were linearised last, since these made the motion.
-  outer_work_ = assembly_.work(context, dv_.view()) +
-                seams_.work(free_motion, dv_.view(), step.state.inverse_mass.view(), rule_.h);
+  if (step.sums_up_work)
+    outer_work_ = assembly_.work(context, dv_.view()) +
+                  seams_.work(free_motion, dv_.view(), step.state.inverse_mass.view(), rule_.h);
 }
 
 /// Writes free_motion_ and, where the rule remembers the step before, free_velocity_.

@@ -9,6 +9,22 @@ struct FaceEnergy {
   double energy, strain;
 };
 
+ICLOTH_HD double strain_of(const Sym2& green) {
+  return static_cast<double>(std::sqrt(std::fmax(largest_stretch2(green), Real(0))) - 1);
+}
+
+struct FaceStrain {
+  View<const Int3> face;
+  View<const Topology::Inverse> inverse;
+  View<const Vec3r> x;
+
+  ICLOTH_HD double operator()(Index i) const {
+    const Int3 f = face[i];
+    const Vec3r xs[3] = {x[f.v[0]], x[f.v[1]], x[f.v[2]]};
+    return strain_of(green_strain(face_frame(xs, inverse[i].m)));
+  }
+};
+
 struct CombineFaces {
   ICLOTH_HD FaceEnergy operator()(FaceEnergy a, FaceEnergy b) const {
     return {a.energy + b.energy, Max{}(a.strain, b.strain)};
@@ -29,12 +45,16 @@ struct MembraneEnergy {
     const Sym2 g = green_strain(face_frame(xs, inverse[i].m));
     const Fabric& cloth = fabric[face_fabric[i]];
     const Real density = membrane_energy(stiffness_at(cloth, g), g) + limit_energy(cloth, g);
-    return {static_cast<double>(area[i] * density),
-            static_cast<double>(std::sqrt(std::fmax(largest_stretch2(g), Real(0))) - 1)};
+    return {static_cast<double>(area[i] * density), strain_of(g)};
   }
 };
 
 }  // namespace
+
+double largest_strain(const Topology& mesh, View<const Vec3r> x) {
+  return reduce("statistics.strain", mesh.cloth_faces, 0.0,
+                FaceStrain{mesh.face.view(), mesh.face_inverse.view(), x}, Max{});
+}
 
 void Membrane::add_energy(const EnergyContext& c, ForceEnergy& energy) const {
   const Topology& mesh = c.mesh;

@@ -46,6 +46,9 @@ struct MembraneShare {
   }
 };
 
+/// The largest principal stretch of a face, less 1, in a shape [m] (≥ cloth_vertices).
+double largest_strain(const Topology& mesh, View<const Vec3r> x);
+
 class Membrane : public Force {
  public:
   MembraneShare face_share(const ForceContext& c) const {

@@ -39,7 +39,8 @@ struct StepReport {
   std::int64_t cg_iterations = 0;  ///< of all linear solves together
   double cg_residual = 0;          ///< ‖b − AΔv‖₂ / ‖b‖₂, true
   double cg_bytes = 0;             ///< that the iterations had to move at least; no column
-  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  ///< [J]
+  /// Energies [J]; like energy_balance they are 0 where nobody asked for them (sim/simulator.h).
+  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;
   double max_strain = 0;  ///< largest principal stretch − 1
   double max_speed = 0;   ///< [m/s]
   double min_gap = 0;     ///< smallest proximity distance at the start of the step [m], h if none

@@ -42,8 +42,9 @@ struct SubstepContext {
   const Parameters& parameters;
   State& state;
   StepReport& report;
-  Real dt;      ///< length of the substep [s]
-  double time;  ///< simulated time at the start of the substep [s]
+  Real dt;                   ///< length of the substep [s]
+  double time;               ///< simulated time at the start of the substep [s]
+  bool sums_up_work = true;  ///< whether the work of the forces is wanted
 
   Real offset() const { return static_cast<Real>(parameters.impact_zones.offset); }
   Real thickness() const { return static_cast<Real>(parameters.proximity.thickness); }

@@ -98,6 +98,32 @@ TEST(EnergyBalance, OfFreeFallIsTheLossOfBackwardEuler) {
   EXPECT_NEAR(run.step().energy_balance, -2 * loss, 1e-9 * loss);
 }
 
+TEST(EnergyBalance, IsLeftOutWhereNobodyAsksForEnergies) {
+  auto scene = sheet_scene(lying(0.3, 200));
+  scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 200), {0, -0.14, 0}));
+  Watched with(scene), without(scene);
+  without.simulator().report_energies(false);
+  for (int k = 0; k < 40; ++k) {
+    const StepReport& full = with.step();
+    const StepReport& lean = without.step();
+    EXPECT_NE(full.kinetic_energy, 0);
+    EXPECT_EQ(lean.kinetic_energy, 0);
+    EXPECT_EQ(lean.elastic_energy, 0);
+    EXPECT_EQ(lean.energy_balance, 0);
+
+    // The motion is the same, and so is what else is said of it.
+    EXPECT_EQ(lean.state_hash, full.state_hash) << k;
+    EXPECT_EQ(lean.max_strain, full.max_strain);
+    EXPECT_EQ(lean.max_speed, full.max_speed);
+  }
+  EXPECT_GT(with.step().proximity_pairs, 0) << "the sheet reaches the ball";
+
+  // Energies can be asked for at any time.
+  without.step();
+  without.simulator().report_energies(true);
+  EXPECT_EQ(without.step().energy_balance, with.step().energy_balance);
+}
+
 TEST(EnergyBalance, OfFreeFallIsNothingInSecondOrder) {
   auto scene = sheet_scene(lying(0.3, 200));
   scene->parameters.implicit.integrator = Integrator::bdf2;

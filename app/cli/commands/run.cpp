@@ -72,6 +72,7 @@ HeadlessJob make_job(const RunOptions& options, Recording& input) {
   job.steps = whole_input ? static_cast<long>(input.steps.size()) : step_count(common, *job.scene);
   job.stop_on_failure = options.on_failure == "stop";
   job.pass_over = !job.stop_on_failure;
+  job.energies = !options.stats_file.empty();
   job.quiet = common.quiet;
   return job;
 }

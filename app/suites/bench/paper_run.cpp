@@ -182,6 +182,7 @@ void PaperRun::open() {
 
   // The new simulator stands at the start of the run.
   simulator_ = make_simulator(context_.build, std::move(scene));
+  simulator_->report_energies(false);
   own_ = simulator_->parameters();
   start_hash_ = simulator_->state_hash();
   rows_ = PaperRows();

@@ -97,6 +97,7 @@ void show_parts(Build build, Report& report) {
       job.scene = std::make_shared<const Scene>(scene);
       job.build = build;
       job.steps = kSteps;
+      job.energies = false;
       job.quiet = true;
       RunStatistics now = run_headless(job).statistics;
       if (round == 0 || now.mean("ms_total") < fastest[k].mean("ms_total"))

@@ -109,6 +109,7 @@ int run_quick(const BenchOptions& options) {
       job.scene = load_scene(test.scene, test.overrides);
       job.build = build;
       job.steps = test.steps;
+      job.energies = false;
       job.quiet = options.quiet;
       const HeadlessResult result = run_headless(job);
       clean = clean && result.clean();

@@ -86,6 +86,7 @@ std::optional<ScalingRow> measure(const Size& size, double triangles, Build buil
   row.mesh = count_elements(*scene);
   row.thickness = scene->parameters.proximity.thickness;
   const std::unique_ptr<Simulator> simulator = make_simulator(build, scene);
+  simulator->report_energies(false);
 
   // The lead-in brings arrays to their size and the sheets into contact.
   for (long step = 0; step < kLeadIn + kMeasured; ++step) {
