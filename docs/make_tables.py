@@ -17,10 +17,23 @@ from read_parameters import read_parameters
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
-RESULTS = DOCS / "results" / "amd-epyc-zen5-2-cores"
+RESULTS = DOCS / "results"
 SCENES = ("flag", "scarf", "sphere", "drape")
 PRESETS = ("fast", "normal", "accurate")
 AS_IN_SCENE = "as in the scene"
+
+
+def recorded_file(name):
+    """The file of that name that one of the folders of machines holds: a suite is recorded once."""
+    found = sorted(RESULTS.glob("*/" + name))
+    if len(found) != 1:
+        sys.exit(f"docs/results: {len(found)} folders hold {name}, expected 1")
+    return found[0]
+
+
+def recorded(suite):
+    """The results file of a suite."""
+    return json.loads(recorded_file(f"{suite}.json").read_text())
 
 
 def number(value):
@@ -38,13 +51,13 @@ class Accuracy:
     """What `icloth bench accuracy` has written: one table of points a scene, and the parts."""
 
     def __init__(self):
-        data = json.loads((RESULTS / "accuracy.json").read_text())
+        data = recorded("accuracy")
         self.machine = data["machine"]
         self.points = {scene: data["tables"]["accuracy_" + scene] for scene in SCENES}
         self.parts = data["tables"]["parts"]
         # What two references differ by is a sentence of the report, one a scene, in their order.
         sentence = r"twice its step it is ([\d.e-]+) mm, ([\d.e-]+) % of the energy and ([\d.e-]+) % of the area"
-        found = re.findall(sentence, (RESULTS / "accuracy.txt").read_text())
+        found = re.findall(sentence, recorded_file("accuracy.txt").read_text())
         self.resolved = dict(zip(SCENES, found, strict=True))
 
     def point(self, scene, setting, value=None):
@@ -113,7 +126,7 @@ def parts_table(accuracy):
 
 def quick_table(_):
     """The rows of `icloth bench quick`, whose columns stand at fixed places of a text."""
-    lines = (RESULTS / "quick.txt").read_text().splitlines()
+    lines = recorded_file("quick.txt").read_text().splitlines()
     machine, rows = lines[0].rsplit(",", 1)[0], []
     for line in lines[2:]:
         name, values = line[:24].strip(), line[24:].split()
@@ -121,11 +134,6 @@ def quick_table(_):
         rows.append([name, build, triangles, steps, rate, f"{median} ms", f"{peak} MB"])
     head = ["scene", "build", "triangles", "steps", "steps/s", "median step", "peak memory"]
     return [machine, ""] + markdown(head, rows)
-
-
-def recorded(suite):
-    """The results file of a suite."""
-    return json.loads((RESULTS / f"{suite}.json").read_text())
 
 
 def zone_solver_table(_):
@@ -187,12 +195,15 @@ def paper_machine(_):
 
 
 def runs_table(_):
-    """Which suites are recorded, each with the commit that it ran at."""
-    rows = [["quick", (RESULTS / "quick.txt").read_text().splitlines()[0].rsplit(" ", 1)[1]]]
-    rows += [[path.stem, recorded(path.stem)["machine"]["commit"]] for path in sorted(RESULTS.glob("*.json"))]
-    return markdown(["suite", "commit", "files"],
-                    [[f"`{suite}`", f"`{commit[:7]}`", ", ".join(f"[{path.name}]({RESULTS.name}/{path.name})"
-                      for path in sorted(RESULTS.glob(suite + ".*")))] for suite, commit in sorted(rows)])
+    """Which suites are recorded, each with its machine and the commit that it ran at."""
+    commits = {path.stem: recorded(path.stem)["machine"]["commit"] for path in RESULTS.glob("*/*.json")}
+    commits["quick"] = recorded_file("quick.txt").read_text().splitlines()[0].rsplit(" ", 1)[1]
+    rows = []
+    for suite, commit in sorted(commits.items()):
+        files = sorted(RESULTS.glob(f"*/{suite}.*"))
+        links = ", ".join(f"[{path.name}]({path.relative_to(RESULTS)})" for path in files)
+        rows.append([f"`{suite}`", files[0].parent.name, f"`{commit[:7]}`", links])
+    return markdown(["suite", "machine", "commit", "files"], rows)
 
 
 TABLES = {"quick": quick_table, "runs": runs_table, "parameters": parameter_table, "presets": preset_table, "settings": settings_table, "meshes": mesh_table, "parts": parts_table,
