@@ -33,6 +33,7 @@ struct Fabric {
   Real bending[3][5];     ///< [N·m]
   Real damping;           ///< stiffness-proportional [s]
   bool measured;
+  Real most_stiffness = 0;           ///< tensile_bound [N/m]
   Real limit_strain = 0;             ///< Green strain where it begins to harden; 0: never
   Real limit_stiffness = 0;          ///< largest extra stiffness beyond that [N/m]
   Real bending_spacing = 10;         ///< curvature between two samples of bending [1/m]
@@ -41,6 +42,13 @@ struct Fabric {
   Real shear_friction = 0;           ///< HG [N/m]
   const Stiffness* table = nullptr;  ///< stiffness at the nodes of StiffnessTable, or null
 };
+
+/// A bound of k11 and k22 at any strain: all of them lie between the data.
+ICLOTH_HD inline Real tensile_bound(const Fabric& fabric) {
+  Real most = 0;
+  for (const auto& row : fabric.stretching) most = std::fmax(most, std::fmax(row[0], row[2]));
+  return 2 * most;
+}
 
 /// The largest principal stretch squared, which is the largest eigenvalue of FᵀF = 2G + I.
 ICLOTH_HD inline Real largest_stretch2(Sym2 g) {

@@ -44,6 +44,9 @@ struct LimitCurve {
   }
 };
 
+/// A bound of the largest principal strain, by Gershgorin's theorem.
+ICLOTH_HD inline Real strain_bound(Sym2 g) { return std::fmax(g.uu, g.vv) + std::fabs(g.uv); }
+
 /// How far a linearisation of the limit at strain `at` is from its tension at strain `end`, as the
 /// strain that makes up for it at full stiffness.
 ICLOTH_HD inline Real missed_limit_strain(const Fabric& fabric, Sym2 at, Sym2 end) {

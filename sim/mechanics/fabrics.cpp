@@ -43,6 +43,7 @@ Fabric make_fabric(const Material& material, const Parameters& p) {
       real(p.material.yarn_friction * p.material.bend_scale * material.bending_friction);
   f.shear_friction =
       real(p.material.yarn_friction * p.material.stretch_scale * material.shear_friction);
+  f.most_stiffness = tensile_bound(f);
   add_strain_limit(f, material, p);
   return f;
 }

@@ -86,7 +86,7 @@ struct PredictedMotion {
 
 /// Tension that the linear solve leaves out: that of the strain which is of second order in the
 /// motion since the point of linearisation, ½ ΔFᵀΔF, and that of strain beyond the limit, as if the
-/// fabric had not hardened.
+/// fabric had not hardened. A bound of it stands for what is negligible.
 struct LinearizationError {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
@@ -94,21 +94,39 @@ struct LinearizationError {
   View<const Fabric> fabric;
   Linearization point;
   View<const Vec3r> dv;
+  Real negligible;
 
   ICLOTH_HD Real operator()(Index i) const {
-    Vec3r start[3], at[3], motion[3], end[3];
+    Vec3r at[3], motion[3], end[3];
     for (int a = 0; a < 3; ++a) {
       const Index v = face[i].v[a];
-      start[a] = point.start[v];
       at[a] = point.at[v];
       motion[a] = point.predicted[v] + point.dt * dv[v];
       end[a] = at[a] + motion[a];
     }
 
-    // The stiffness is the one that the linearisation used.
+    // Most faces turn and stretch so little that no fabric is stiff enough to make it count.
     const Fabric& cloth = fabric[face_fabric[i]];
-    const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
     const FaceFrame change = face_frame(motion, inverse[i].m);
+    const Real most =
+        Real(0.5) * cloth.most_stiffness * std::fmax(norm2(change.fu), norm2(change.fv));
+    if (!(most > negligible) && !may_reach_limit(cloth, at, i) && !may_reach_limit(cloth, end, i))
+      return most;
+    return exactly(i, cloth, at, end, change);
+  }
+
+  ICLOTH_HD bool may_reach_limit(const Fabric& cloth, const Vec3r x[3], Index i) const {
+    return cloth.limit_strain > 0 &&
+           strain_bound(green_strain(face_frame(x, inverse[i].m))) > cloth.limit_strain;
+  }
+
+  ICLOTH_HD Real exactly(Index i, const Fabric& cloth, const Vec3r at[3], const Vec3r end[3],
+                         const FaceFrame& change) const {
+    Vec3r start[3];
+    for (int a = 0; a < 3; ++a) start[a] = point.start[face[i].v[a]];
+
+    // The stiffness is the one that the linearisation used.
+    const Stiffness k = stiffness_at(cloth, green_strain(face_frame(start, inverse[i].m)));
     const Real missed = Real(0.5) * std::fmax(k.k11 * norm2(change.fu), k.k22 * norm2(change.fv));
 
     // The limit is much stiffer than the fabric. What counts is the strain that it lets pass.
@@ -162,7 +180,7 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   seams_.assemble(step, free_motion, start.v, rule_.h);
 
   // How much the motion without forces turns the faces says whether one linearisation will do.
-  linearization_error_ = find_linearization_error(context);
+  linearization_error_ = p.newton_iterations > 1 ? find_linearization_error(context) : 0;
 
   // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
   for (int iteration = 1;; ++iteration) {
@@ -244,13 +262,16 @@ void Implicit::move(SubstepContext& step) {
 
 double Implicit::find_linearization_error(const ForceContext& context) const {
   const Topology& mesh = context.mesh;
+  const ImplicitParameters& p = context.parameters.implicit;
+  const double negligible = std::min(p.newton_tolerance, p.max_linearization_error);
   return static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
                                     LinearizationError{.face = mesh.face.view(),
                                                        .inverse = mesh.face_inverse.view(),
                                                        .face_fabric = mesh.face_fabric.view(),
                                                        .fabric = mesh.fabric.view(),
                                                        .point = context.point,
-                                                       .dv = dv_.view()},
+                                                       .dv = dv_.view(),
+                                                       .negligible = static_cast<Real>(negligible)},
                                     Max{}));
 }
 

@@ -130,6 +130,25 @@ TEST(StiffnessTable, StrainsFarOutsideUseItsBorder) {
   }
 }
 
+TEST(Fabric, StiffnessAndStrainStayWithinTheirBounds) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> uniform(-0.4, 0.8);
+  for (const char* name : {"gray-interlock", "11oz-black-denim", "white-dots-on-blk"}) {
+    const Fabric fabric = fabric_of(load_material(name, ""));
+    const double bound = tensile_bound(fabric);
+    double most = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+      const Sym2 g{uniform(random), uniform(random), uniform(random)};
+      const Stiffness k = stiffness_at(fabric, g);
+      most = std::max({most, k.k11, k.k22});
+      EXPECT_LE(0.5 * (largest_stretch2(g) - 1), strain_bound(g) + 1e-12);
+    }
+    EXPECT_LE(most, bound * (1 + 1e-12)) << name;
+    EXPECT_GT(most, 0.5 * bound) << name;
+  }
+  EXPECT_EQ(strain_bound({0.1, 0, 0.2}), 0.2) << "reached where nothing shears";
+}
+
 Fabric limited() {
   Fabric fabric = fabric_of(cotton());
   fabric.limit_strain = 0.05, fabric.limit_stiffness = 3e4;
