@@ -137,14 +137,17 @@ struct BodiesLeft {
   ICLOTH_HD Index operator()(Index k) const { return where.stays(first + k, fresh) ? 0 : 1; }
 };
 
-/// Picks the pairs of vertices that stayed in their boxes and that may still meet.
+/// Picks the pairs of vertices that stayed in their boxes and that may still meet. They may if
+/// their boxes are the same as before.
 template <class Dirty>
 struct StillCandidates {
   View<const Pair> pair;
   Dirty left;
   MovingBoxes first, second;
+  bool same_boxes;
   ICLOTH_HD bool operator()(Index i) const {
     const Pair p = pair[i];
+    if (same_boxes) return !left(p);
     return !left(p) && !stay_apart(first.at(p.a), second.at(p.b));
   }
 };
@@ -260,10 +263,11 @@ bool BroadPhase::replace_leavers(SubstepContext& step, const Leavers& found) {
        StillCandidates<DirtyVertexFace>{candidates_.vertex_faces.view(),
                                         {vertex, {vertex, mesh.face.view()}},
                                         box.vertex,
-                                        box.face});
+                                        box.face,
+                                        fresh});
   keep(candidates_.edge_edges,
        StillCandidates<DirtyEdgeEdge>{
-           candidates_.edge_edges.view(), {{vertex, mesh.edge.view()}}, box.edge, box.edge});
+           candidates_.edge_edges.view(), {{vertex, mesh.edge.view()}}, box.edge, box.edge, fresh});
   search(step, left_.view(), more_);
   append_pairs(more_.vertex_faces, candidates_.vertex_faces);
   append_pairs(more_.edge_edges, candidates_.edge_edges);
