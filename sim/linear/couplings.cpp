@@ -59,7 +59,25 @@ struct Append {
   }
 };
 
+struct TakeCorner {
+  View<const Coupling> list;
+  View<const Index> entries;
+  View<CouplingCorner> corners;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index c = entries[k] / 4;
+    corners[k] = {c, list[c].s.w[entries[k] % 4]};
+  }
+};
+
 }  // namespace
+
+void CouplingCorners::build(View<const Coupling> list, View<const Int4> slots, Index vertices) {
+  incidence_.build(slots, vertices);
+  const View<const Index> entries = incidence_.entries();
+  corners_.resize(entries.size());
+  for_each("implicit.coupling_corners", entries.size(), TakeCorner{list, entries, corners_.view()});
+}
 
 void Couplings::gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
                        View<const Coupling> more) {
@@ -93,7 +111,7 @@ void Couplings::lay_out(View<const Contact> contacts, View<const ContactTerm> te
            TakePlace{contacts, contact_.view(), list_.view(), slots_.view(), listed_.view()});
   if (more.size() > 0)
     for_each("implicit.couplings", more.size(), Append{more, count, list_.view(), slots_.view()});
-  incidence_.build(slots_.view(), vertices);
+  corners_.build(list_.view(), slots_.view(), vertices);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -25,9 +25,16 @@ struct Coupling {
   }
 };
 
+/// A corner of a coupling, as the list of its vertex has it.
+struct CouplingCorner {
+  Index coupling;
+  Real weight;
+};
+
 struct CouplingView {
   View<const Coupling> list;
-  View<const Index> first, entries;  ///< see Incidence; not read where the list is empty
+  View<const Index> first;             ///< corner of each vertex; not read where the list is empty
+  View<const CouplingCorner> corners;  ///< vertex by vertex, couplings ascending
   std::uint64_t layout = 0;  ///< equal numbers of one Couplings have the same stencils; 0: unknown
 
   Index size() const { return list.size(); }
@@ -36,8 +43,7 @@ struct CouplingView {
   template <class F>
   ICLOTH_HD void of_vertex(Index i, const F& f) const {
     if (list.size() == 0) return;
-    for (Index k = first[i]; k < first[i + 1]; ++k)
-      f(entries[k] / 4, list[entries[k] / 4].s.w[entries[k] % 4]);
+    for (Index k = first[i]; k < first[i + 1]; ++k) f(corners[k].coupling, corners[k].weight);
   }
 
   /// Whether a vertex is a corner of any coupling, whatever that adds.
@@ -48,6 +54,20 @@ struct CouplingView {
     of_vertex(i, [&](Index c, Real) { found = found || list[c].acts(); });
     return found;
   }
+};
+
+/// The corners of couplings, vertex by vertex. The solver goes through them in every iteration, and
+/// in this order it reads one stream instead of a cache line of the list for each corner.
+class CouplingCorners {
+ public:
+  /// `slots`: the corners' vertices, as Incidence takes them (list).
+  void build(View<const Coupling> list, View<const Int4> slots, Index vertices);
+  View<const Index> first() const { return incidence_.first(); }
+  View<const CouplingCorner> view() const { return corners_.view(); }
+
+ private:
+  Incidence incidence_;
+  Array<CouplingCorner> corners_;
 };
 
 class Couplings {
@@ -62,9 +82,7 @@ class Couplings {
   void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
               View<const Coupling> more = {});
 
-  CouplingView view() const {
-    return {list_.view(), incidence_.first(), incidence_.entries(), layout_};
-  }
+  CouplingView view() const { return {list_.view(), corners_.first(), corners_.view(), layout_}; }
 
  private:
   bool must_lay_out(View<const ContactTerm> terms) const;
@@ -77,7 +95,7 @@ class Couplings {
   Array<Index> contact_;  ///< of each coupling, ascending
   Array<Coupling> list_;
   Array<Int4> slots_;
-  Incidence incidence_;
+  CouplingCorners corners_;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -193,7 +193,7 @@ double bytes_per_iteration(const SystemView& system, Index rows) {
   const double blocks = system.column.size(), others = system.lower_column.size();
   return blocks * (9 * sizeof(Real) + sizeof(Index)) + 2 * sizeof(Index) * others +
          static_cast<double>(system.couplings.size()) *
-             (sizeof(Coupling) + 4 * sizeof(Index) + 2 * sizeof(Vec3r)) +
+             (sizeof(Coupling) + 4 * sizeof(CouplingCorner) + 2 * sizeof(Vec3r)) +
          static_cast<double>(rows) *
              (15 * sizeof(Vec3r) + sizeof(Mat3r) + sizeof(Real) + 3 * sizeof(Index));
 }

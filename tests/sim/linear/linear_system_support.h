@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kernels/index.h"
-#include "sim/linear/incidence.h"
 #include "sim/linear/linear_solver.h"
 
 namespace icloth::cpu32 {
@@ -20,7 +19,7 @@ struct TestSystem {
   BlockMatrix matrix;
   Array<Real> masses;
   Array<Coupling> couplings;
-  Incidence incidence;
+  CouplingCorners coupling_corners;
   Array<Mat3r> inverse_diagonal;
   Array<Vec3r> b, x;
 
@@ -53,15 +52,16 @@ struct TestSystem {
       corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
     Array<Int4> slots;
     slots.upload(corners);
-    incidence.build(slots.view(), rows);
+    coupling_corners.build(couplings.view(), slots.view(), rows);
     b.upload(rhs);
     x.resize(rows + kPadding);
     x.fill(Vec3r{});
   }
 
   SystemView system() {
-    return {
-        matrix.view(), masses.view(), {couplings.view(), incidence.first(), incidence.entries()}};
+    return {matrix.view(),
+            masses.view(),
+            {couplings.view(), coupling_corners.first(), coupling_corners.view()}};
   }
 
   /// Starts from what x holds.
