@@ -28,7 +28,7 @@ inline constexpr std::ptrdiff_t kBlocksAhead = 80;
 ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Real* numbers) {
   // Three numbers a row are read as four, so that each row of a block takes one vector
   // multiplication. The fourth number is not used.
-  Lanes row0{}, row1{}, row2{}, columns{};
+  Lanes row0{}, row1{}, row2{};
 
   // The stored blocks of the row itself: each gives three dot products, summed up lane by lane.
   for (Index k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) {
@@ -41,14 +41,17 @@ ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Rea
   }
 
   // The blocks below the diagonal are stored in other rows. They act transposed: their rows are
-  // added up, weighted by the numbers of the vector.
+  // added up, weighted by the numbers of the vector. Three sums that do not wait for each other
+  // keep the processor busy.
+  Lanes weighted0{}, weighted1{}, weighted2{};
   for (Index k = matrix.lower_first[i]; k < matrix.lower_first[i + 1]; ++k) {
     const Real* m = matrix.entries + 9 * static_cast<std::ptrdiff_t>(matrix.lower_block[k]);
     const Real* v = numbers + 3 * static_cast<std::ptrdiff_t>(matrix.lower_column[k]);
-    columns += load_lanes(m) * v[0];
-    columns += load_lanes(m + 3) * v[1];
-    columns += load_lanes(m + 6) * v[2];
+    weighted0 += load_lanes(m) * v[0];
+    weighted1 += load_lanes(m + 3) * v[1];
+    weighted2 += load_lanes(m + 6) * v[2];
   }
+  const Lanes columns = weighted0 + weighted1 + weighted2;
 
   // The lanes of the three dot products are added up last.
   return {row0[0] + row0[1] + row0[2] + columns[0], row1[0] + row1[1] + row1[2] + columns[1],

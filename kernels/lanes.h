@@ -20,10 +20,10 @@ ICLOTH_HD inline Lanes operator*(Lanes a, Lanes b) {
 ICLOTH_HD inline Lanes operator*(Lanes a, Real s) {
   return {{a.v[0] * s, a.v[1] * s, a.v[2] * s, a.v[3] * s}};
 }
-ICLOTH_HD inline Lanes& operator+=(Lanes& a, Lanes b) {
-  for (int k = 0; k < 4; ++k) a.v[k] += b.v[k];
-  return a;
+ICLOTH_HD inline Lanes operator+(Lanes a, Lanes b) {
+  return {{a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2], a.v[3] + b.v[3]}};
 }
+ICLOTH_HD inline Lanes& operator+=(Lanes& a, Lanes b) { return a = a + b; }
 #else
 // The vector type is written out because compilers drop a lane that is not used and then shuffle
 // the other three.

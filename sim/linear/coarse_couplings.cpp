@@ -96,6 +96,8 @@ void CoarseCouplings::fill(const SystemView& system, View<const Index> group, In
 void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group, Index nodes) {
   const View<const Coupling> couplings = system.couplings.list;
   first_.resize(0);
+  column_.resize(0);
+  value_.resize(0);
   if (couplings.size() == 0) return;
 
   // Terms are listed and sorted by their block, so that each block is a sum in a fixed order.
@@ -107,7 +109,7 @@ void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group,
   // Every first term of a block starts one.
   compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
   column_.resize(starts_.size());
-  value_.resize(starts_.size());
+  value_.resize(starts_.size() + kPadding);
   for_each("implicit.coarse_columns", starts_.size(),
            BlockColumn{terms_.view(), starts_.view(), column_.view()});
 

@@ -23,7 +23,9 @@ class CoarseCouplings {
   void fill(const SystemView& system, View<const Index> group, Index nodes);
 
   /// The rows; there are none without couplings. Valid until the next fill.
-  CoarseRows rows() const { return {first_.view(), column_.view(), value_.view()}; }
+  CoarseRows rows() const {
+    return {first_.view(), column_.view(), value_.view().sub(0, column_.size())};
+  }
 
  private:
   void lay_out(const SystemView& system, View<const Index> group, Index nodes);
@@ -33,7 +35,7 @@ class CoarseCouplings {
   SortedAppend append_sorted_;
   Array<Index> starts_;  ///< first term of each block
   Array<Index> first_, column_;
-  Array<Mat3r> value_;
+  Array<Mat3r> value_;  ///< (blocks + kPadding)
 };
 
 }  // namespace icloth::ICLOTH_BUILD
