@@ -239,12 +239,12 @@ void Solver::rest_cloth() {
   energy_.reset();
 }
 
-int Solver::travel_level(StepReport& report) const {
-  const double speed = static_cast<double>(
+int Solver::travel_level(StepReport& report) {
+  fastest_ = static_cast<double>(
       reduce("step.speed", mesh_.vertices, Real(0), Speed{state_.v.view()}, Max{}));
   const double reach = parameters_.step.max_travel * world_.median_edge;
   int level = 0;
-  double travel = speed * parameters_.step.time_step;
+  double travel = fastest_ * parameters_.step.time_step;
   for (; travel > reach && level < parameters_.step.max_substep_levels; travel *= 0.5) ++level;
   if (travel > reach) report.reach(Limit::substep_levels);
   return level;

@@ -73,8 +73,9 @@ class Solver final : public Simulator {
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
   void use_device() const;
   void use_hands(std::span<const InputEvent> events, StepReport& report);
-  /// Halvings after which no vertex is expected to travel further than allowed in a substep.
-  int travel_level(StepReport& report) const;
+  /// Halvings after which no vertex is expected to travel further than allowed in a substep. Writes
+  /// fastest_.
+  int travel_level(StepReport& report);
   void back_to_substep_start();
   void rest_cloth();
   void save_start();
@@ -97,6 +98,7 @@ class Solver final : public Simulator {
   mutable Array<Vec3r> watched_position_;  ///< their positions [m], watched_positions
   /// Device memory that the pool had when it was last looked at [bytes], grow_reserve.
   std::uint64_t reserved_ = 0;
+  double fastest_ = 0;    ///< largest speed of a vertex at the start of the substep [m/s]
   double free_mass_ = 0;  ///< of the vertices that are not pinned [kg], set_parameters
   bool reports_energies_ = true;
   /// Energy of the state where it is known [J], step. It follows from memory and parameters.

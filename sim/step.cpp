@@ -151,7 +151,7 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 }
 
 SubstepContext Solver::substep(StepReport& report, double start, double dt) {
-  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start, reports_energies_};
+  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start, reports_energies_, fastest_};
 }
 
 /// Cloth that was let go from a body is pushed out of it instead of being kept away from it.
@@ -259,6 +259,7 @@ void Solver::pass_over() {
   const double dt = parameters_.step.time_step;
   begin_substep(state_.time, dt);
   StepReport report;
+  travel_level(report);
   SubstepContext step = substep(report, state_.time, dt);
   broad_phase_.cover_candidate(step);
   ccd_.find(step, broad_phase_, {}, false, let_go_view(state_, mesh_));

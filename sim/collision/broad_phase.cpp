@@ -188,10 +188,12 @@ void BroadPhase::update_hulls(SubstepContext& step) {
 }
 
 /// The distance by which paths may exceed the expected ones without making the lists anew: the
-/// repulsion reaches h, and the solve differs from the prediction.
+/// repulsion reaches h, and the solve differs from the prediction. More of it lets the lists serve
+/// the next steps too, unless something moves too far in one for that.
 Real BroadPhase::slack(const SubstepContext& step) {
-  return std::max({static_cast<Real>(0.75) * step.thickness(), 2 * step.offset(),
-                   static_cast<Real>(0.2) * step.mesh.median_edge});
+  const Real least = std::max(static_cast<Real>(0.75) * step.thickness(), 2 * step.offset());
+  const Real lasting = static_cast<Real>(0.2) * step.mesh.median_edge;
+  return static_cast<Real>(step.fastest) * step.dt > lasting ? least : std::max(least, lasting);
 }
 
 void BroadPhase::find_candidates(SubstepContext& step, View<const std::uint8_t> dirty) {

@@ -45,6 +45,7 @@ struct SubstepContext {
   Real dt;                   ///< length of the substep [s]
   double time;               ///< simulated time at the start of the substep [s]
   bool sums_up_work = true;  ///< whether the work of the forces is wanted
+  double fastest = 0;        ///< largest speed of a vertex at the start of the substep [m/s]
 
   Real offset() const { return static_cast<Real>(parameters.impact_zones.offset); }
   Real thickness() const { return static_cast<Real>(parameters.proximity.thickness); }
