@@ -9,14 +9,16 @@ namespace {
 struct AirWork {
   View<const Int3> face;
   View<const Real> inverse_mass;
-  View<const Vec3r> at, v, dv, x0, x1;
+  Linearization point;
+  View<const Vec3r> dv, x0, x1;
   Wind wind;
 
   ICLOTH_HD double operator()(Index i) const {
+    const View<const Vec3r> at = point.shape_of(i);
     Vec3r xs[3], vs[3];
     for (int a = 0; a < 3; ++a) {
       xs[a] = at[face[i].v[a]];
-      vs[a] = v[face[i].v[a]];
+      vs[a] = point.v[face[i].v[a]];
     }
     const AirForce air = air_force(wind, xs, vs);
 
@@ -39,8 +41,7 @@ double Air::work(const ForceContext& c, View<const Vec3r> dv) const {
   return reduce("implicit.air_work", c.mesh.cloth_faces, 0.0,
                 AirWork{.face = c.mesh.face.view(),
                         .inverse_mass = c.state.inverse_mass.view(),
-                        .at = c.point.at,
-                        .v = c.point.v,
+                        .point = c.point,
                         .dv = dv,
                         .x0 = c.state.x0.view(),
                         .x1 = c.state.candidate.view(),

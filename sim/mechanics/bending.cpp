@@ -72,6 +72,7 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
   // two faces.
   for_each("implicit.angles", mesh.hinge_count,
            HingeAngles{.hinge = single.hinge,
+                       .slots = mesh.hinge_slots.view(),
                        .fabric = single.fabric,
                        .point = c.point,
                        .motion = motions_.view(),
@@ -80,6 +81,7 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
   for_each("implicit.plates", mesh.cloth_faces,
            PlatePass{.plate = mesh.plate.view(),
                      .hinge = single.hinge,
+                     .slots = mesh.hinge_slots.view(),
                      .area = mesh.face_area.view(),
                      .face_fabric = mesh.face_fabric.view(),
                      .fabric = single.fabric,

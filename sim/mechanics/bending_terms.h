@@ -63,9 +63,15 @@ struct HingeMotion {
   Real turn;   ///< its predicted change, damping included [rad]
 };
 
+/// Whether a hinge stays as it was linearised first, because both of its faces do.
+ICLOTH_HD inline bool keeps_hinge(const Linearization& point, const HingeSlots& slots) {
+  return slots.slot[0] >= 0 && point.keeps(slots.slot[0] / 3) && point.keeps(slots.slot[1] / 3);
+}
+
 /// First pass of the plates. It writes the gradients of the terms; the last pass writes the rest.
 struct HingeAngles {
   View<const HingeRest> hinge;
+  View<const HingeSlots> slots;
   View<const Fabric> fabric;
   Linearization point;
   View<HingeMotion> motion;
@@ -73,6 +79,7 @@ struct HingeAngles {
   Real extra_damping;  ///< on top of the fabric's [s]
 
   ICLOTH_HD void operator()(Index i) const {
+    if (keeps_hinge(point, slots[i])) return;
     const HingeRest& h = hinge[i];
     const HingeAngle angle = hinge_angle_of(h, point.at);
     const Real damping = hinge_damping(h, fabric, extra_damping);
@@ -91,6 +98,7 @@ struct PlateTerm {
 struct PlatePass {
   View<const PlateRest> plate;
   View<const HingeRest> hinge;
+  View<const HingeSlots> slots;
   View<const Real> area;
   View<const Index> face_fabric;
   View<const Fabric> fabric;
@@ -101,7 +109,15 @@ struct PlatePass {
   Real extra_damping;  ///< on top of the fabric's [s]
   BendingFriction friction;
 
+  /// Whether the face and all of its hinges stay as they were linearised first.
+  ICLOTH_HD bool keeps(Index i) const {
+    bool all = point.keeps(i);
+    for (const Index h : plate[i].hinge) all = all && (h < 0 || keeps_hinge(point, slots[h]));
+    return all;
+  }
+
   ICLOTH_HD void operator()(Index i) const {
+    if (keeps(i)) return;
     const PlateRest& p = plate[i];
     const Fabric& cloth = fabric[face_fabric[i]];
 

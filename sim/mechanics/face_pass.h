@@ -49,6 +49,7 @@ struct FacePass {
   Shares shares;
 
   ICLOTH_HD void operator()(Index i) const {
+    if (point.keeps(i)) return;
     FaceShape f{.index = i,
                 .v = face[i],
                 .fabric = fabric[face_fabric[i]],

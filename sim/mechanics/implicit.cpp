@@ -84,9 +84,13 @@ struct PredictedMotion {
   ICLOTH_HD void operator()(Index i) const { predicted[i] = -dt * dv[i]; }
 };
 
+/// Faces whose error, or its bound, is this share of what is allowed are linearised again together
+/// with those that have more.
+constexpr Real kNegligibleError = Real(0.25);
+
 /// Tension that the linear solve leaves out: that of the strain which is of second order in the
 /// motion since the point of linearisation, ½ ΔFᵀΔF, and that of strain beyond the limit, as if the
-/// fabric had not hardened. A bound of it stands for what is negligible.
+/// fabric had not hardened. Where a bound of it is allowed, the bound stands for it.
 struct LinearizationError {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
@@ -94,14 +98,23 @@ struct LinearizationError {
   View<const Fabric> fabric;
   Linearization point;
   View<const Vec3r> dv;
-  Real negligible;
+  Real allowed;                 ///< error up to which a bound is as good
+  View<std::uint8_t> to_renew;  ///< becomes 1 where it is not negligible; empty: not written
 
   ICLOTH_HD Real operator()(Index i) const {
+    const Real error = error_of(i);
+    if (to_renew.size() > 0 && error > kNegligibleError * allowed) to_renew[i] = 1;
+    return error;
+  }
+
+  ICLOTH_HD Real error_of(Index i) const {
+    const View<const Vec3r> shape = point.shape_of(i);
     Vec3r at[3], motion[3], end[3];
     for (int a = 0; a < 3; ++a) {
       const Index v = face[i].v[a];
-      at[a] = point.at[v];
+      at[a] = shape[v];
       motion[a] = point.predicted[v] + point.dt * dv[v];
+      if (point.keeps(i)) motion[a] = motion[a] + (point.at[v] - at[a]);
       end[a] = at[a] + motion[a];
     }
 
@@ -110,7 +123,7 @@ struct LinearizationError {
     const FaceFrame change = face_frame(motion, inverse[i].m);
     const Real most =
         Real(0.5) * cloth.most_stiffness * std::fmax(norm2(change.fu), norm2(change.fv));
-    if (!(most > negligible) && !may_reach_limit(cloth, at, i) && !may_reach_limit(cloth, end, i))
+    if (!(most > allowed) && !may_reach_limit(cloth, at, i) && !may_reach_limit(cloth, end, i))
       return most;
     return exactly(i, cloth, at, end, change);
   }
@@ -181,6 +194,7 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
 
   // How much the motion without forces turns the faces says whether one linearisation will do.
   linearization_error_ = p.newton_iterations > 1 ? find_linearization_error(context) : 0;
+  renew_no_face(step);
 
   // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
   for (int iteration = 1;; ++iteration) {
@@ -260,10 +274,19 @@ void Implicit::move(SubstepContext& step) {
                         .dt = rule_.h});
 }
 
-double Implicit::find_linearization_error(const ForceContext& context) const {
+/// Notes that no face needs another linearisation yet. The pressure of a gas, which is not
+/// linearised at all, and the friction of yarns follow the shape everywhere.
+void Implicit::renew_no_face(const SubstepContext& step) {
+  const bool anywhere = step.parameters.material.pressure != 0 || step.state.yarns.size() > 0 ||
+                        step.parameters.implicit.newton_iterations <= 1;
+  to_renew_.resize(anywhere ? 0 : step.mesh.cloth_faces);
+  to_renew_.fill(0);
+}
+
+double Implicit::find_linearization_error(const ForceContext& context) {
   const Topology& mesh = context.mesh;
   const ImplicitParameters& p = context.parameters.implicit;
-  const double negligible = std::min(p.newton_tolerance, p.max_linearization_error);
+  const double allowed = std::min(p.newton_tolerance, p.max_linearization_error);
   return static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
                                     LinearizationError{.face = mesh.face.view(),
                                                        .inverse = mesh.face_inverse.view(),
@@ -271,7 +294,8 @@ double Implicit::find_linearization_error(const ForceContext& context) const {
                                                        .fabric = mesh.fabric.view(),
                                                        .point = context.point,
                                                        .dv = dv_.view(),
-                                                       .negligible = static_cast<Real>(negligible)},
+                                                       .allowed = static_cast<Real>(allowed),
+                                                       .to_renew = to_renew_.view()},
                                     Max{}));
 }
 
@@ -282,6 +306,8 @@ void Implicit::linearize_at_candidate(ForceContext& context) {
   for_each("implicit.predicted", vertices, PredictedMotion{dv_.view(), predicted_.view(), rule_.h});
   context.point.at = at_.view();
   context.point.predicted = predicted_.view();
+  renewed_.copy_from(to_renew_);
+  context.point.renewed = renewed_.view();
 }
 
 void Implicit::finish_substep(State& state) {

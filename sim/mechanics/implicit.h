@@ -1,5 +1,6 @@
 // Stage 2: backward Euler (paper Section 2.4; Baraff and Witkin 1998) or BDF2, linearised at x̂: x0
-// first, then where the last solve ended, while the linearisation is wrong (Newton).
+// first, then where the last solve ended, while the linearisation is wrong (Newton). Later
+// linearisations renew the faces that need it, as a rule one in a hundred.
 //
 //   [M + h(h+d)K + contacts + springs + air] Δv = h [f(x̂) + f_ext − K (x' + h v' − x̂ + d v')]
 //   x1 = x' + h (v' + Δv)      h, x', v': sim/mechanics/time_rule.h; Euler: dt, x0, v
@@ -43,8 +44,9 @@ class Implicit {
 
  private:
   void move_freely(const SubstepContext& step);
+  void renew_no_face(const SubstepContext& step);
   void move(SubstepContext& step);
-  double find_linearization_error(const ForceContext& context) const;
+  double find_linearization_error(const ForceContext& context);
   void linearize_at_candidate(ForceContext& context);
 
   Assembly assembly_;
@@ -58,6 +60,8 @@ class Implicit {
   /// Shape and predicted motion of the linearisation, from the second iteration on [m]
   /// (cloth_vertices), linearize_at_candidate.
   Array<Vec3r> at_, predicted_;
+  Array<std::uint8_t> renewed_;   ///< see Linearization::renewed, linearize_at_candidate
+  Array<std::uint8_t> to_renew_;  ///< the same for the next iteration, find_linearization_error
   double linearization_error_ = 0;
   double outer_work_ = 0;  ///< of the forces [J], integrate
 };

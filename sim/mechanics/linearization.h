@@ -15,9 +15,18 @@ struct Linearization {
   View<const Vec3r> predicted;  ///< motion from `at` to x1 with Δv = 0 [m]
   View<const Vec3r> v;          ///< before the step [m/s]
   Real dt;                      ///< [s]
+  /// Faces that are linearised at `at`, where 1. The others, and the hinges between two of them,
+  /// have hardly moved and stay as the first iteration linearised them, at `start`. Empty: there
+  /// are no others (cloth_faces).
+  View<const std::uint8_t> renewed{};
 
   /// Whether this is the second or a later iteration.
   ICLOTH_HD bool moved() const { return at.data() != start.data(); }
+  /// Whether a face stays as it was linearised first.
+  ICLOTH_HD bool keeps(Index face) const { return renewed.size() > 0 && renewed[face] == 0; }
+  /// The shape at which a face is linearised.
+  ICLOTH_HD View<const Vec3r> shape_of(Index face) const { return keeps(face) ? start : at; }
+
   /// Factor of K on the right-hand side, predicted + d v [m].
   ICLOTH_HD Vec3r damped_motion(Index i, Real damping) const {
     return predicted[i] + damping * v[i];

@@ -334,6 +334,7 @@ std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>&
   const HingeBending single{
       .hinge = rest, .fabric = fabric, .point = point, .term = term, .extra_damping = 0};
   const HingeAngles angles{.hinge = rest,
+                           .slots = {slots.data(), hinges},
                            .fabric = fabric,
                            .point = point,
                            .motion = motion,
@@ -341,6 +342,7 @@ std::vector<HingeTerm> plate_terms(const Sheet& sheet, const std::vector<Vec3r>&
                            .extra_damping = 0};
   const PlatePass pass{.plate = {sheet.plates.data(), faces},
                        .hinge = rest,
+                       .slots = {slots.data(), hinges},
                        .area = {sheet.world.face_area.data(), faces},
                        .face_fabric = {fabric_of.data(), faces},
                        .fabric = fabric,
