@@ -151,7 +151,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 }
 
 SubstepContext Solver::substep(StepReport& report, double start, double dt) {
-  return {mesh_, parameters_, state_, report, static_cast<Real>(dt), start, reports_energies_, fastest_};
+  return {mesh_, parameters_,       state_,  report, static_cast<Real>(dt),
+          start, reports_energies_, fastest_};
 }
 
 /// Cloth that was let go from a body is pushed out of it instead of being kept away from it.

@@ -14,11 +14,13 @@ ICLOTH_HD Index column_of(std::uint64_t key) { return static_cast<Index>(key & 0
 /// Lists the pairs of nodes that a coupling acts on, with the product of their weights.
 struct FindTerms {
   View<const Coupling> couplings;
+  View<const Index> chosen;  ///< of `couplings`; empty: all of them
   View<const Real> inverse_mass;
   View<const Index> group;
 
   template <class Emit>
-  ICLOTH_HD void operator()(Index c, Emit& emit) const {
+  ICLOTH_HD void operator()(Index i, Emit& emit) const {
+    const Index c = chosen.size() > 0 ? chosen[i] : i;
     const Stencil& s = couplings[c].s;
     Index nodes[4];
     Real weights[4];
@@ -39,6 +41,55 @@ struct FindTerms {
     for (int a = 0; a < count; ++a)
       for (int b = 0; b < count; ++b)
         emit(CoarseTerm{key_of(nodes[a], nodes[b]), c, weights[a] * weights[b]});
+  }
+};
+
+/// The order of terms: block by block, and by coupling in each.
+ICLOTH_HD bool comes_before(const CoarseTerm& a, const CoarseTerm& b) {
+  return a.key < b.key || (a.key == b.key && a.coupling < b.coupling);
+}
+
+/// Puts the terms that were there before to their places among those that were added, run by run:
+/// the place of the first one of a run is searched for, and the others follow from it.
+struct PlaceTermsBefore {
+  static constexpr Index kRun = 32;
+  View<const CoarseTerm> before, added;
+  View<const Index> moved;  ///< see CouplingChange
+  View<CoarseTerm> merged;
+
+  static Index runs(Index terms) { return (terms + kRun - 1) / kRun; }
+  ICLOTH_HD CoarseTerm now(Index i) const {
+    CoarseTerm term = before[i];
+    term.coupling = moved[term.coupling];
+    return term;
+  }
+
+  ICLOTH_HD void operator()(Index run) const {
+    const Index first = run * kRun, left = before.size() - first;
+    Index earlier =
+        partition_point(added.size(), [&](Index k) { return comes_before(added[k], now(first)); });
+    for (Index i = first; i < first + (left < kRun ? left : kRun); ++i) {
+      const CoarseTerm term = now(i);
+      while (earlier < added.size() && comes_before(added[earlier], term)) ++earlier;
+      merged[i + earlier] = term;
+    }
+  }
+};
+
+/// Puts the added terms to their places among those that were there before.
+struct PlaceTermsAdded {
+  View<const CoarseTerm> before, added;
+  View<const Index> moved;  ///< see CouplingChange
+  View<CoarseTerm> merged;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const CoarseTerm term = added[k];
+    const Index earlier = partition_point(before.size(), [&](Index i) {
+      CoarseTerm other = before[i];
+      other.coupling = moved[other.coupling];
+      return comes_before(other, term);
+    });
+    merged[k + earlier] = term;
   }
 };
 
@@ -94,17 +145,19 @@ void CoarseCouplings::fill(const SystemView& system, View<const Index> group, In
 }
 
 void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group, Index nodes) {
-  const View<const Coupling> couplings = system.couplings.list;
+  const CouplingView& couplings = system.couplings;
+  const bool follows = layout_ != 0 && couplings.change.from == layout_ && terms_.size() > 0;
   first_.resize(0);
   column_.resize(0);
   value_.resize(0);
-  if (couplings.size() == 0) return;
-
-  // Terms are listed and sorted by their block, so that each block is a sum in a fixed order.
-  collect("implicit.coarse_terms", couplings.size(),
-          FindTerms{couplings, system.inverse_mass, group}, found_);
-  terms_.resize(0);
-  append_sorted_("implicit.coarse_sort", found_, terms_);
+  if (couplings.size() == 0) {
+    terms_.resize(0);
+    return;
+  }
+  if (follows)
+    merge_terms(system, group);
+  else
+    sort_terms(system, group);
 
   // Every first term of a block starts one.
   compact("implicit.coarse_starts", terms_.size(), StartsBlock{terms_.view()}, starts_);
@@ -117,6 +170,33 @@ void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group,
   first_.resize(nodes + 1);
   for_each("implicit.coarse_first", nodes + 1,
            FirstBlocks{terms_.view(), starts_.view(), first_.view()});
+}
+
+/// Terms are listed and sorted by their block, so that each block is a sum in a fixed order.
+void CoarseCouplings::sort_terms(const SystemView& system, View<const Index> group) {
+  const View<const Coupling> couplings = system.couplings.list;
+  collect("implicit.coarse_terms", couplings.size(),
+          FindTerms{couplings, {}, system.inverse_mass, group}, found_);
+  terms_.resize(0);
+  append_sorted_("implicit.coarse_sort", found_, terms_);
+}
+
+/// The same list from the one before: only the terms of the couplings that were added are sorted.
+void CoarseCouplings::merge_terms(const SystemView& system, View<const Index> group) {
+  const CouplingChange& change = system.couplings.change;
+  found_.resize(0);
+  if (change.added.size() > 0)
+    collect("implicit.coarse_terms", change.added.size(),
+            FindTerms{system.couplings.list, change.added, system.inverse_mass, group}, found_);
+  added_.resize(0);
+  append_sorted_("implicit.coarse_sort", found_, added_);
+
+  swap(terms_, before_);
+  terms_.resize(before_.size() + added_.size());
+  for_each("implicit.coarse_merge", PlaceTermsBefore::runs(before_.size()),
+           PlaceTermsBefore{before_.view(), added_.view(), change.moved, terms_.view()});
+  for_each("implicit.coarse_merge", added_.size(),
+           PlaceTermsAdded{before_.view(), added_.view(), change.moved, terms_.view()});
 }
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -29,9 +29,12 @@ class CoarseCouplings {
 
  private:
   void lay_out(const SystemView& system, View<const Index> group, Index nodes);
+  void sort_terms(const SystemView& system, View<const Index> group);
+  void merge_terms(const SystemView& system, View<const Index> group);
 
-  std::uint64_t layout_ = 0;         ///< of the couplings, see CouplingView
-  Array<CoarseTerm> found_, terms_;  ///< the latter sorted by key
+  std::uint64_t layout_ = 0;          ///< of the couplings, see CouplingView
+  Array<CoarseTerm> found_, terms_;   ///< the latter sorted by key
+  Array<CoarseTerm> before_, added_;  ///< sorted too, merge_terms
   SortedAppend append_sorted_;
   Array<Index> starts_;  ///< first term of each block
   Array<Index> first_, column_;

@@ -31,11 +31,19 @@ struct CouplingCorner {
   Real weight;
 };
 
+/// How a list of couplings came from the one before, for those who keep sorted lists of them.
+struct CouplingChange {
+  std::uint64_t from = 0;     ///< layout before; 0: nothing is left of it
+  View<const Index> moved{};  ///< where each coupling of that list is now, ascending
+  View<const Index> added{};  ///< couplings that were not in it, ascending
+};
+
 struct CouplingView {
   View<const Coupling> list;
   View<const Index> first;             ///< corner of each vertex; not read where the list is empty
   View<const CouplingCorner> corners;  ///< vertex by vertex, couplings ascending
   std::uint64_t layout = 0;  ///< equal numbers of one Couplings have the same stencils; 0: unknown
+  CouplingChange change{};   ///< to this layout
 
   Index size() const { return list.size(); }
 
@@ -60,14 +68,20 @@ struct CouplingView {
 /// in this order it reads one stream instead of a cache line of the list for each corner.
 class CouplingCorners {
  public:
-  /// `slots`: the corners' vertices, as Incidence takes them (list).
-  void build(View<const Coupling> list, View<const Int4> slots, Index vertices);
-  View<const Index> first() const { return incidence_.first(); }
+  void build(View<const Coupling> list, Index vertices);
+  /// Takes the list that came from the one before by a change.
+  void follow(const CouplingChange& change, View<const Coupling> list, Index vertices);
+  View<const Index> first() const { return first_.view(); }
   View<const CouplingCorner> view() const { return corners_.view(); }
 
  private:
-  Incidence incidence_;
-  Array<CouplingCorner> corners_;
+  template <class List>
+  void list_corners(const List& couplings, Index vertices);
+
+  Array<Int4> slots_;
+  Incidence incidence_;  ///< of all couplings, build, or of those that were added, follow
+  Array<Index> first_, first_before_;
+  Array<CouplingCorner> corners_, corners_before_;
 };
 
 class Couplings {
@@ -82,19 +96,24 @@ class Couplings {
   void gather(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
               View<const Coupling> more = {});
 
-  CouplingView view() const { return {list_.view(), corners_.first(), corners_.view(), layout_}; }
+  CouplingView view() const {
+    return {list_.view(), corners_.first(), corners_.view(), layout_, change_};
+  }
 
  private:
   bool must_lay_out(View<const ContactTerm> terms) const;
   void lay_out(View<const Contact> contacts, View<const ContactTerm> terms, Index vertices,
                View<const Coupling> more);
+  void note_change(Index contacts, Index more);
 
   bool laid_out_ = false;
   std::uint64_t layout_ = 0;
-  Array<Index> listed_;   ///< 1: it has a place in the list (contacts)
-  Array<Index> contact_;  ///< of each coupling, ascending
+  Array<Index> listed_;                    ///< 1: it has a place in the list (contacts)
+  Array<Index> contact_, contact_before_;  ///< of each coupling, ascending
+  Array<Index> place_;                     ///< in the list, of contacts that have one (contacts)
+  Array<Index> moved_, added_;             ///< see CouplingChange
+  CouplingChange change_;
   Array<Coupling> list_;
-  Array<Int4> slots_;
   CouplingCorners corners_;
 };
 

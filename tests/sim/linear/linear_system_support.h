@@ -47,12 +47,7 @@ struct TestSystem {
     inverse_diagonal.upload(inverse);
     masses.upload(inverse_mass);
     couplings.upload(coupling_list);
-    std::vector<Int4> corners;
-    for (const Coupling& c : coupling_list)
-      corners.push_back({{c.s.v[0], c.s.v[1], c.s.v[2], c.s.v[3]}});
-    Array<Int4> slots;
-    slots.upload(corners);
-    coupling_corners.build(couplings.view(), slots.view(), rows);
+    coupling_corners.build(couplings.view(), rows);
     b.upload(rhs);
     x.resize(rows + kPadding);
     x.fill(Vec3r{});

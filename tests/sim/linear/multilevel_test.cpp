@@ -352,6 +352,89 @@ TEST(Couplings, KeepTheirPlacesWhileContactsOpenAndCloseAgain) {
   EXPECT_EQ(corners(gather({2})), (std::vector<Index>{2}));
 }
 
+TEST(Couplings, AddedOnesLeaveTheListsAsIfAllHadBeenThereAtOnce) {
+  constexpr Index kVertices = 300, kContacts = 2000, kNodes = 40;
+  std::mt19937 random(21);
+  const auto vertex = [&](Index end) {
+    return static_cast<Index>(random() % static_cast<unsigned>(end));
+  };
+  std::vector<Contact> contacts(kContacts);
+  std::vector<ContactTerm> terms(kContacts);
+  for (Index c = 0; c < kContacts; ++c) {
+    // The vertices of a contact differ; now and then the last one is an obstacle's.
+    const Index first = vertex(kVertices - 10);
+    contacts[at(c)].s = {{first, first + 1, first + 2 + vertex(3), first + 5 + vertex(5)},
+                         {Real(0.25), Real(-0.5), Real(-0.125), Real(c % 7)}};
+    if (c % 9 == 0) contacts[at(c)].s.v[3] = kVertices + 3;
+    terms[at(c)].h = {{static_cast<Real>(1 + c % 5), 0, 0, 2, 0, 3}};
+  }
+  Array<Contact> contact_array;
+  contact_array.upload(contacts);
+  Array<Real> masses;
+  masses.upload(std::vector<Real>(kVertices, Real(1)));
+  std::vector<Index> group;
+  for (Index i = 0; i < kVertices; ++i) group.push_back(i * kNodes / kVertices);
+  Array<Index> groups;
+  groups.upload(group);
+  Array<Coupling> more;  // as of a seam
+  more.upload({Coupling{{{0, 5, 9, 40}, {1, -1, Real(0.5), 0}}, {{1, 0, 0, 1, 0, 1}}, {}}});
+
+  // A few contacts close in every pass, now and then none, and some open again.
+  Couplings followed;
+  CoarseCouplings coarse_followed;
+  std::vector<Index> has_place;
+  for (int pass = 0; pass < 12; ++pass) {
+    for (Index c = 0; c < kContacts; ++c) {
+      Index& active = terms[at(c)].active;
+      if (pass != 5 && random() % 10 == 0) active = 1;
+      if (active != 0 && random() % 20 == 0) active = 0;
+    }
+    if (pass == 8) followed.clear();
+    Array<ContactTerm> term_array;
+    term_array.upload(terms);
+    followed.gather(contact_array.view(), term_array.view(), kVertices, more.view());
+    const CouplingView view = followed.view();
+    EXPECT_EQ(view.change.from != 0, pass != 0 && pass != 8) << pass;
+
+    // The oracle takes all that have a place in one layout, and then empties the same ones.
+    if (pass == 0 || pass == 8) has_place.assign(kContacts, 0);
+    std::vector<ContactTerm> listed = terms;
+    for (Index c = 0; c < kContacts; ++c) {
+      has_place[at(c)] = has_place[at(c)] | terms[at(c)].active;
+      listed[at(c)].active = has_place[at(c)];
+    }
+    Array<ContactTerm> listed_array;
+    listed_array.upload(listed);
+    Couplings fresh;
+    fresh.gather(contact_array.view(), listed_array.view(), kVertices, more.view());
+    fresh.gather(contact_array.view(), term_array.view(), kVertices, more.view());
+    const CouplingView expected = fresh.view();
+    ASSERT_EQ(view.size(), expected.size());
+    for (Index i = 0; i < kVertices; ++i) {
+      std::vector<std::pair<Index, Real>> a, b;
+      view.of_vertex(i, [&](Index c, Real w) { a.emplace_back(c, w); });
+      expected.of_vertex(i, [&](Index c, Real w) { b.emplace_back(c, w); });
+      ASSERT_EQ(a, b) << "pass " << pass << " vertex " << i;
+    }
+
+    // The same holds for the blocks of the level below.
+    SystemView system{};
+    system.inverse_mass = masses.view();
+    system.couplings = view;
+    coarse_followed.fill(system, groups.view(), kNodes);
+    CoarseCouplings coarse;
+    system.couplings = expected;
+    coarse.fill(system, groups.view(), kNodes);
+    const CoarseRows a = coarse_followed.rows(), b = coarse.rows();
+    ASSERT_EQ(a.column.size(), b.column.size());
+    for (Index k = 0; k < a.column.size(); ++k) {
+      ASSERT_EQ(a.column[k], b.column[k]);
+      for (int e = 0; e < 9; ++e) ASSERT_EQ(a.value[k].m[e], b.value[k].m[e]);
+    }
+    for (Index i = 0; i <= kNodes; ++i) ASSERT_EQ(a.first[i], b.first[i]);
+  }
+}
+
 TEST(CoarseCouplings, RenewTheirNumbersInTheirPlaces) {
   Sheets sheets(14, 3, 100, 90);
   std::vector<Index> group;
