@@ -99,15 +99,9 @@ struct LinearizationError {
   Linearization point;
   View<const Vec3r> dv;
   Real allowed;                 ///< error up to which a bound is as good
-  View<std::uint8_t> to_renew;  ///< becomes 1 where it is not negligible; empty: not written
+  View<std::uint8_t> to_renew;  ///< becomes 1 where a face needs it; empty: not written
 
   ICLOTH_HD Real operator()(Index i) const {
-    const Real error = error_of(i);
-    if (to_renew.size() > 0 && error > kNegligibleError * allowed) to_renew[i] = 1;
-    return error;
-  }
-
-  ICLOTH_HD Real error_of(Index i) const {
     const View<const Vec3r> shape = point.shape_of(i);
     Vec3r at[3], motion[3], end[3];
     for (int a = 0; a < 3; ++a) {
@@ -123,9 +117,12 @@ struct LinearizationError {
     const FaceFrame change = face_frame(motion, inverse[i].m);
     const Real most =
         Real(0.5) * cloth.most_stiffness * std::fmax(norm2(change.fu), norm2(change.fv));
-    if (!(most > allowed) && !may_reach_limit(cloth, at, i) && !may_reach_limit(cloth, end, i))
-      return most;
-    return exactly(i, cloth, at, end, change);
+    const bool hardens = may_reach_limit(cloth, at, i) || may_reach_limit(cloth, end, i);
+    const Real error = most > allowed || hardens ? exactly(i, cloth, at, end, change) : most;
+
+    // Hardened fabric is so stiff that it always counts.
+    if (to_renew.size() > 0 && (hardens || error > kNegligibleError * allowed)) to_renew[i] = 1;
+    return error;
   }
 
   ICLOTH_HD bool may_reach_limit(const Fabric& cloth, const Vec3r x[3], Index i) const {
