@@ -23,21 +23,33 @@ struct MatrixView {
 /// larger than the cache, and it costs little where the matrix fits into it.
 inline constexpr std::ptrdiff_t kBlocksAhead = 80;
 
+/// The blocks of a row times their parts of a vector: three dot products, summed up lane by lane.
+/// Three numbers are read as four, so that each row of a block takes one vector multiplication; the
+/// fourth number is not used.
+struct BlockRowSum {
+  Lanes row0{}, row1{}, row2{};
+
+  ICLOTH_HD void add(const Real* block, const Real* numbers) {
+    const Lanes v = load_lanes(numbers);
+    row0 += load_lanes(block) * v;
+    row1 += load_lanes(block + 3) * v;
+    row2 += load_lanes(block + 6) * v;
+  }
+  /// The lanes are added up last.
+  ICLOTH_HD Vec3r total() const {
+    return {row0[0] + row0[1] + row0[2], row1[0] + row1[1] + row1[2], row2[0] + row2[1] + row2[2]};
+  }
+};
+
 /// Row i of the product with a vector of 3 numbers a row, readable kPadding rows beyond its end.
 /// Every stored block serves two rows.
 ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Real* numbers) {
-  // Three numbers a row are read as four, so that each row of a block takes one vector
-  // multiplication. The fourth number is not used.
-  Lanes row0{}, row1{}, row2{};
-
-  // The stored blocks of the row itself: each gives three dot products, summed up lane by lane.
+  // The stored blocks of the row itself.
+  BlockRowSum row;
   for (Index k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) {
     const Real* m = matrix.entries + 9 * static_cast<std::ptrdiff_t>(k);
     prefetch(m, 9 * kBlocksAhead);
-    const Lanes v = load_lanes(numbers + 3 * static_cast<std::ptrdiff_t>(matrix.column[k]));
-    row0 += load_lanes(m) * v;
-    row1 += load_lanes(m + 3) * v;
-    row2 += load_lanes(m + 6) * v;
+    row.add(m, numbers + 3 * static_cast<std::ptrdiff_t>(matrix.column[k]));
   }
 
   // The blocks below the diagonal are stored in other rows. They act transposed: their rows are
@@ -53,9 +65,7 @@ ICLOTH_HD inline Vec3r multiply_row(const MatrixView& matrix, Index i, const Rea
   }
   const Lanes columns = weighted0 + weighted1 + weighted2;
 
-  // The lanes of the three dot products are added up last.
-  return {row0[0] + row0[1] + row0[2] + columns[0], row1[0] + row1[1] + row1[2] + columns[1],
-          row2[0] + row2[1] + row2[2] + columns[2]};
+  return row.total() + Vec3r{columns[0], columns[1], columns[2]};
 }
 
 }  // namespace icloth::ICLOTH_BUILD

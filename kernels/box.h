@@ -47,14 +47,15 @@ struct MovingBox {
   /// The box of the whole motion.
   ICLOTH_HD Box swept() const {
     Box box = start;
-    icloth::ICLOTH_BUILD::include(box, end);
+    include(box, end);
     return box;
   }
-  ICLOTH_HD void include(const MovingBox& other) {
-    icloth::ICLOTH_BUILD::include(start, other.start);
-    icloth::ICLOTH_BUILD::include(end, other.end);
-  }
 };
+
+ICLOTH_HD inline void include(MovingBox& a, const MovingBox& b) {
+  include(a.start, b.start);
+  include(a.end, b.end);
+}
 
 /// Whether an axis separates two elements at the start and, on the same side, at the end.
 /// Coordinates are linear in time, so that the two never meet in between: layers that move together

@@ -22,8 +22,6 @@ struct OneElement {
   static constexpr int kWidth = 1;
   MovingBox box;
 
-  OneElement() = default;
-  ICLOTH_HD explicit OneElement(const MovingBox& own) : box(own) {}
   ICLOTH_HD void set(int, const MovingBox& own) { box = own; }
   ICLOTH_HD const MovingBox& hull() const { return box; }
   ICLOTH_HD const MovingBox& member(int) const { return box; }
@@ -42,7 +40,7 @@ class EightElements {
   }
   ICLOTH_HD void set(int member, const MovingBox& box) {
     set_child(boxes_, member, box);
-    hull_.include(box);
+    include(hull_, box);
     all_ |= 1u << member;
   }
   ICLOTH_HD const MovingBox& hull() const { return hull_; }

@@ -57,16 +57,11 @@ struct CoarseRows {
 
   /// Row i times a vector of 3 numbers a row; see multiply_row.
   ICLOTH_HD Vec3r multiplied(Index i, const Real* numbers) const {
-    Lanes row0{}, row1{}, row2{};
-    if (i + 1 >= first.size()) return {};
-    for (Index k = first[i]; k < first[i + 1]; ++k) {
-      const Real* m = value.data()[k].m;
-      const Lanes v = load_lanes(numbers + 3 * static_cast<std::ptrdiff_t>(column[k]));
-      row0 += load_lanes(m) * v;
-      row1 += load_lanes(m + 3) * v;
-      row2 += load_lanes(m + 6) * v;
-    }
-    return {row0[0] + row0[1] + row0[2], row1[0] + row1[1] + row1[2], row2[0] + row2[1] + row2[2]};
+    BlockRowSum sum;
+    of_row(i, [&](Index j, const Mat3r& block) {
+      sum.add(block.m, numbers + 3 * static_cast<std::ptrdiff_t>(j));
+    });
+    return sum.total();
   }
 };
 

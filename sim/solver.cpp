@@ -239,9 +239,13 @@ void Solver::rest_cloth() {
   energy_.reset();
 }
 
-int Solver::travel_level(StepReport& report) {
-  fastest_ = static_cast<double>(
+double Solver::largest_speed() const {
+  return static_cast<double>(
       reduce("step.speed", mesh_.vertices, Real(0), Speed{state_.v.view()}, Max{}));
+}
+
+int Solver::travel_level(StepReport& report) {
+  fastest_ = largest_speed();
   const double reach = parameters_.step.max_travel * world_.median_edge;
   int level = 0;
   double travel = fastest_ * parameters_.step.time_step;

@@ -73,8 +73,9 @@ class Solver final : public Simulator {
   /// Calls come from any thread, and a CUDA device is selected for each thread by itself.
   void use_device() const;
   void use_hands(std::span<const InputEvent> events, StepReport& report);
-  /// Halvings after which no vertex is expected to travel further than allowed in a substep. Writes
-  /// fastest_.
+  double largest_speed() const;  ///< of a vertex [m/s]
+  /// Halvings after which no vertex is expected to travel further than allowed in a substep. Notes
+  /// the speed of the fastest one.
   int travel_level(StepReport& report);
   void back_to_substep_start();
   void rest_cloth();

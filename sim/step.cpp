@@ -151,8 +151,14 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
 }
 
 SubstepContext Solver::substep(StepReport& report, double start, double dt) {
-  return {mesh_, parameters_,       state_,  report, static_cast<Real>(dt),
-          start, reports_energies_, fastest_};
+  return {.mesh = mesh_,
+          .parameters = parameters_,
+          .state = state_,
+          .report = report,
+          .dt = static_cast<Real>(dt),
+          .time = start,
+          .sums_up_work = reports_energies_,
+          .fastest = fastest_};
 }
 
 /// Cloth that was let go from a body is pushed out of it instead of being kept away from it.
@@ -260,7 +266,7 @@ void Solver::pass_over() {
   const double dt = parameters_.step.time_step;
   begin_substep(state_.time, dt);
   StepReport report;
-  travel_level(report);
+  fastest_ = largest_speed();
   SubstepContext step = substep(report, state_.time, dt);
   broad_phase_.cover_candidate(step);
   ccd_.find(step, broad_phase_, {}, false, let_go_view(state_, mesh_));

@@ -143,6 +143,8 @@ ContactMaker contact_maker(const SubstepContext& step, const LetGoView& let_go) 
   const State& s = step.state;
   const Real h = step.thickness();
   const ProximityParameters& p = step.parameters.proximity;
+
+  // Pairs count up to a part of an edge beyond the thickness, since forces may bring them nearer.
   return {.x = s.x0.view(),
           .v = s.v.view(),
           .rest_gap = {.rest = mesh.rest.view(),

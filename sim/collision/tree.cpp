@@ -68,7 +68,7 @@ struct FitLevel {
       const Index child = n * kTreeWidth + c;
       MovingBox b;
       if (child < below_count)
-        for (int k = 0; k < kTreeWidth; ++k) b.include(child_box(node[below + child], k));
+        for (int k = 0; k < kTreeWidth; ++k) include(b, child_box(node[below + child], k));
       set_child(node[level + n], c, b);
     }
   }

@@ -13,15 +13,14 @@ ICLOTH_HD Index column_of(std::uint64_t key) { return static_cast<Index>(key & 0
 
 /// Lists the pairs of nodes that a coupling acts on, with the product of their weights.
 struct FindTerms {
-  View<const Coupling> couplings;
-  View<const Index> chosen;  ///< of `couplings`; empty: all of them
+  SomeCouplings couplings;
   View<const Real> inverse_mass;
   View<const Index> group;
 
   template <class Emit>
   ICLOTH_HD void operator()(Index i, Emit& emit) const {
-    const Index c = chosen.size() > 0 ? chosen[i] : i;
-    const Stencil& s = couplings[c].s;
+    const Index c = couplings[i];
+    const Stencil& s = couplings.list[c].s;
     Index nodes[4];
     Real weights[4];
     int count = 0;
@@ -174,9 +173,8 @@ void CoarseCouplings::lay_out(const SystemView& system, View<const Index> group,
 
 /// Terms are listed and sorted by their block, so that each block is a sum in a fixed order.
 void CoarseCouplings::sort_terms(const SystemView& system, View<const Index> group) {
-  const View<const Coupling> couplings = system.couplings.list;
-  collect("implicit.coarse_terms", couplings.size(),
-          FindTerms{couplings, {}, system.inverse_mass, group}, found_);
+  const SomeCouplings all{system.couplings.list, {}, true};
+  collect("implicit.coarse_terms", all.size(), FindTerms{all, system.inverse_mass, group}, found_);
   terms_.resize(0);
   append_sorted_("implicit.coarse_sort", found_, terms_);
 }
@@ -184,10 +182,9 @@ void CoarseCouplings::sort_terms(const SystemView& system, View<const Index> gro
 /// The same list from the one before: only the terms of the couplings that were added are sorted.
 void CoarseCouplings::merge_terms(const SystemView& system, View<const Index> group) {
   const CouplingChange& change = system.couplings.change;
-  found_.resize(0);
-  if (change.added.size() > 0)
-    collect("implicit.coarse_terms", change.added.size(),
-            FindTerms{system.couplings.list, change.added, system.inverse_mass, group}, found_);
+  const SomeCouplings added{system.couplings.list, change.added, false};
+  collect("implicit.coarse_terms", added.size(), FindTerms{added, system.inverse_mass, group},
+          found_);
   added_.resize(0);
   append_sorted_("implicit.coarse_sort", found_, added_);
 

@@ -51,16 +51,6 @@ struct Append {
   ICLOTH_HD void operator()(Index i) const { list[first + i] = more[i]; }
 };
 
-/// The couplings of a list, all of them or those that a second list names.
-struct SomeCouplings {
-  View<const Coupling> list;
-  View<const Index> chosen;
-  bool all;
-
-  ICLOTH_HD Index size() const { return all ? list.size() : chosen.size(); }
-  ICLOTH_HD Index operator[](Index i) const { return all ? i : chosen[i]; }
-};
-
 struct CornersOfCouplings {
   SomeCouplings couplings;
   View<Int4> slots;
@@ -148,8 +138,7 @@ struct FindMoved {
 }  // namespace
 
 /// Lists the corners of couplings in `incidence_`, vertex by vertex.
-template <class List>
-void CouplingCorners::list_corners(const List& couplings, Index vertices) {
+void CouplingCorners::list_corners(const SomeCouplings& couplings, Index vertices) {
   slots_.resize(couplings.size());
   for_each("implicit.coupling_slots", couplings.size(),
            CornersOfCouplings{couplings, slots_.view()});

@@ -25,6 +25,16 @@ struct Coupling {
   }
 };
 
+/// The couplings of a list, all of them or those that a second list names.
+struct SomeCouplings {
+  View<const Coupling> list;
+  View<const Index> chosen;
+  bool all;
+
+  ICLOTH_HD Index size() const { return all ? list.size() : chosen.size(); }
+  ICLOTH_HD Index operator[](Index i) const { return all ? i : chosen[i]; }
+};
+
 /// A corner of a coupling, as the list of its vertex has it.
 struct CouplingCorner {
   Index coupling;
@@ -75,8 +85,7 @@ class CouplingCorners {
   View<const CouplingCorner> view() const { return corners_.view(); }
 
  private:
-  template <class List>
-  void list_corners(const List& couplings, Index vertices);
+  void list_corners(const SomeCouplings& couplings, Index vertices);
 
   Array<Int4> slots_;
   Incidence incidence_;  ///< of all couplings, build, or of those that were added, follow

@@ -1,6 +1,6 @@
 // Stage 2: backward Euler (paper Section 2.4; Baraff and Witkin 1998) or BDF2, linearised at x̂: x0
 // first, then where the last solve ended, while the linearisation is wrong (Newton). Later
-// linearisations renew the faces that need it, as a rule one in a hundred.
+// linearisations renew the faces that need it.
 //
 //   [M + h(h+d)K + contacts + springs + air] Δv = h [f(x̂) + f_ext − K (x' + h v' − x̂ + d v')]
 //   x1 = x' + h (v' + Δv)      h, x', v': sim/mechanics/time_rule.h; Euler: dt, x0, v

@@ -95,7 +95,7 @@ struct PlainTree {
         for (std::size_t c = 0; c < kTreeWidth; ++c) {
           const MovingBox child = first + c < level.size() ? level[first + c] : MovingBox{};
           set_child(node, static_cast<int>(c), child);
-          hull.include(child);
+          include(hull, child);
         }
         nodes.push_back(node);
         hulls.push_back(hull);

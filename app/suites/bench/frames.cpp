@@ -10,6 +10,8 @@ Frames::Frames(Build build, const std::string& scene, const std::vector<std::str
                long first, long last, long every, const std::function<void()>& watch)
     : simulator_(make_simulator(build, load_scene(scene, overrides))),
       own_(simulator_->parameters()) {
+  simulator_->report_energies(false);
+
   // The run itself; states are kept at regular steps.
   Progress progress(scene, last, static_cast<bool>(watch));
   for (long step = 0; step < last; ++step) {
