@@ -12,6 +12,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "icloth_solver_sum.h"
 #include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
@@ -19,8 +20,6 @@
 namespace icloth {
 namespace {
 
-/// Grows when dressing gives other results for the same input.
-constexpr int kDressingVersion = 5;
 constexpr std::string_view kMagic = "icloth drape 1\n";
 constexpr const char* kExtension = ".drape";
 constexpr std::size_t kMostDrapes = 200;  // in the folder
@@ -204,7 +203,7 @@ void remove_oldest_drapes(const std::string& folder) {
 
 std::string drape_key(const Scene& scene) {
   Fingerprint print;
-  print.add(kDressingVersion);
+  print.add(std::string(ICLOTH_SOLVER_SUM));
   print.add(dump_parameters(scene.parameters));
   for (const Cloth& cloth : scene.cloths) add_cloth(print, cloth);
   for (const Garment& garment : scene.garments) add_garment(print, garment);

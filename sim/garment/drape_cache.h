@@ -16,7 +16,8 @@ struct Drape {
 };
 
 /// 32 hex digits that name the drape of a scene as it was loaded: they differ where a pattern, a
-/// body, a fabric, a parameter or the way of dressing does.
+/// body, a fabric, a parameter or a source of the solver does. A drape of another solver would make
+/// a run depend on what was run before.
 std::string drape_key(const Scene& scene);
 
 /// Folder of the cache, $XDG_CACHE_HOME/icloth or ~/.cache/icloth; empty where neither is known.
