@@ -8,6 +8,7 @@
 #include "app/common/machine.h"
 #include "app/suites/bench/suite.h"
 #include "sim/cuda_devices.h"
+#include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"
 #include "sim/scene/scene_io.h"
@@ -20,7 +21,7 @@ using Json = nlohmann::ordered_json;
 /// One case of the quick suite.
 struct BenchCase {
   const char* name;
-  const char* scene;
+  const char* scene;  ///< a name, or a file below the assets
   std::vector<std::string> overrides;
   long steps;
 };
@@ -29,8 +30,15 @@ const std::vector<BenchCase>& quick_suite() {
   static const std::vector<BenchCase> cases = {
       {"scarf, scripted drag", "scarf", {}, 600},
       {"sphere, 200K triangles", "sphere", {"triangles=200000"}, 40},
+      {"two sheets on a ball", "bench/two_sheets.json", {}, 60},
+      {"ball into curtains", "bench/three_curtains.json", {}, 16},
   };
   return cases;
+}
+
+std::shared_ptr<const Scene> scene_of(const BenchCase& test) {
+  const std::string name = test.scene;
+  return load_scene(name.ends_with(".json") ? assets_folder() + "/" + name : name, test.overrides);
 }
 
 /// The result of one case as JSON.
@@ -106,7 +114,7 @@ int run_quick(const BenchOptions& options) {
     for (const Build build : builds) {
       reset_peak_memory();
       HeadlessJob job;
-      job.scene = load_scene(test.scene, test.overrides);
+      job.scene = scene_of(test);
       job.build = build;
       job.steps = test.steps;
       job.energies = false;
