@@ -7,9 +7,11 @@
 //   proximity                 (1) VF and EE pairs closer than the thickness        Section 2.5
 //   implicit                  (2) anchors of the yarn friction follow;
 //                                 candidate x1, may penetrate                      Section 2.4–2.5
+//   ccd                       (3) impacts on the segments x0 → x1
+//                                 many: they join the contacts, and (2) goes on once
 //   repeat
-//     ccd                     (3) impacts on the segments x0 → x1; first all, then only pairs
-//                                 with a dirty vertex                              Algorithm 1
+//     ccd                     (3) first all pairs, then only pairs with a dirty
+//                                 vertex                                           Algorithm 1
 //     none left → accept
 //     impact_zones            (4) moves only what must move                        Algorithms 2–3
 //   impacts left → refuse, halve the step and try again; in the smallest step, what still collides
@@ -26,6 +28,9 @@
 
 namespace icloth::ICLOTH_BUILD {
 namespace {
+
+/// So few impacts are solved faster by the zones than by another solve of the whole cloth.
+constexpr std::int64_t kFewImpacts = 8;
 
 /// Runs a stage and adds its wall time to one row of the report.
 template <class Stage>
@@ -142,6 +147,8 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   // Forces alone decide the candidate, which may penetrate.
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   if (!check_candidate(report, last_resort)) return false;
+  find_impacts(step, true);
+  if (!resolve_by_contacts(step, last_resort)) return false;
 
   // Impacts of the candidate are corrected, or in the last resort taken back.
   if (resolve_by_zones(step)) return true;
@@ -181,13 +188,32 @@ bool Solver::check_candidate(StepReport& report, bool last_resort) {
   return last_resort;
 }
 
+/// Fast cloth meets what was not near it at the start. Many impacts join the contacts, and the
+/// forces decide anew, with stiffness and friction that the zones do not know. False when the new
+/// candidate is wrong.
+bool Solver::resolve_by_contacts(SubstepContext& step, bool last_resort) {
+  StepReport& report = step.report;
+  if (!parameters_.proximity.enabled) return true;
+  for (int round = 0; round < parameters_.proximity.late_rounds; ++round) {
+    if (report.impacts_left < kFewImpacts) return true;
+
+    // The motion and the state of the contacts so far are where the solve goes on from.
+    timed(report.ms_proximity, [&] { proximity_.add(step, ccd_.impacts()); });
+    timed(report.ms_implicit, [&] { implicit_.integrate_again(step, proximity_); });
+    if (!check_candidate(report, last_resort)) return false;
+    find_impacts(step, true);
+  }
+  return true;
+}
+
+/// The impacts of the candidate are known.
 bool Solver::resolve_by_zones(SubstepContext& step) {
   StepReport& report = step.report;
   impact_zones_.begin_substep();
 
   // Each round solves the zones of the impacts that are left, until none is.
   for (int round = 0;; ++round) {
-    find_impacts(step, round == 0);
+    if (round > 0) find_impacts(step, false);
     if (round == 0) report.impacts_first += report.impacts_left;
     report.impacts_in_rounds.push_back(report.impacts_left);
     if (report.impacts_left == 0) return true;

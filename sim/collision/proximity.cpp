@@ -13,12 +13,26 @@ namespace {
 /// metre of cloth of 200 g/m² that hangs down from it [N/m].
 constexpr double kLineLoad = 1;
 
+/// Areas of the elements of cloths [m²].
+struct ElementAreas {
+  View<const Real> vertex, face, edge;
+
+  ICLOTH_HD Real of_vertex_face(Pair pair) const {
+    return pair.a < vertex.size() ? vertex[pair.a] : face[pair.b];
+  }
+  /// The smaller number is that of a cloth edge.
+  ICLOTH_HD Real of_edges(Pair pair) const {
+    return pair.b < edge.size() ? std::fmin(edge[pair.a], edge[pair.b]) : edge[pair.a];
+  }
+};
+
 /// The data and the part of the search that vertex–face and edge–edge pairs share.
 struct ContactMaker {
   View<const Vec3r> x, v;
   RestGap rest_gap;
   View<const Real> inverse_mass;
   View<const Index> object;
+  ElementAreas areas;
   Index cloth_vertices;
   Real thickness, slack, reach, dt;
   Vec3r fall_speed;  ///< gravity · dt [m/s]
@@ -153,6 +167,7 @@ ContactMaker contact_maker(const SubstepContext& step, const LetGoView& let_go) 
                        .seam = mesh.seam.view()},
           .inverse_mass = s.inverse_mass.view(),
           .object = mesh.object.view(),
+          .areas = {mesh.vertex_area.view(), mesh.face_area.view(), mesh.edge_area.view()},
           .cloth_vertices = mesh.cloth_vertices,
           .thickness = h,
           .slack = static_cast<Real>(0.25) * mesh.median_edge,
@@ -171,7 +186,6 @@ struct FindVertexFace {
   ContactMaker maker;
   View<const Pair> candidates;
   View<const Int3> face;
-  View<const Real> vertex_area, face_area;
 
   template <class Emit>
   ICLOTH_HD void operator()(Index i, Emit& emit) const {
@@ -187,8 +201,7 @@ struct FindVertexFace {
     c.key = pair_key(false, pair);
     c.s = {{pair.a, f.v[0], f.v[1], f.v[2]},
            {Real(1), -closest.w[0], -closest.w[1], -closest.w[2]}};
-    c.area = maker.carrying_area(pair.a < maker.cloth_vertices ? vertex_area[pair.a]
-                                                               : face_area[pair.b]);
+    c.area = maker.carrying_area(maker.areas.of_vertex_face(pair));
     const Vec3r corner = maker.x[f.v[0]];
     if (maker.make(c, cross(maker.x[f.v[1]] - corner, maker.x[f.v[2]] - corner))) emit(c);
   }
@@ -198,7 +211,6 @@ struct FindEdgeEdge {
   ContactMaker maker;
   View<const Pair> candidates;
   View<const Int2> edge;
-  View<const Real> edge_area;  ///< cloth edges only
 
   template <class Emit>
   ICLOTH_HD void operator()(Index i, Emit& emit) const {
@@ -214,9 +226,7 @@ struct FindEdgeEdge {
     c.key = pair_key(true, pair);
     c.s = {{p.v[0], p.v[1], q.v[0], q.v[1]},
            {-(1 - closest.s), -closest.s, 1 - closest.t, closest.t}};
-    const Real area = edge_area[pair.a];  // the smaller number is a cloth edge
-    c.area =
-        maker.carrying_area(pair.b < edge_area.size() ? std::fmin(area, edge_area[pair.b]) : area);
+    c.area = maker.carrying_area(maker.areas.of_edges(pair));
     const Vec3r along_p = maker.x[p.v[1]] - maker.x[p.v[0]];
     const Vec3r along_q = maker.x[q.v[1]] - maker.x[q.v[0]];
     const Vec3r across = cross(along_p, along_q);
@@ -224,6 +234,33 @@ struct FindEdgeEdge {
     // Nearly parallel edges leave the common perpendicular undetermined.
     const bool parallel = norm2(across) < Real(1e-2) * norm2(along_p) * norm2(along_q);
     if (maker.make(c, parallel ? Vec3r{} : across)) emit(c);
+  }
+};
+
+/// The contact of a pair that collides. Its gap is that of the planes at the time of impact, which
+/// the elements keep from then on.
+struct ContactOfImpact {
+  ContactMaker maker;
+  View<const Impact> impacts;
+  View<Contact> contacts;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Impact& hit = impacts[i];
+    const bool edge_edge = key_is_edge_edge(hit.key);
+    const Pair pair = key_pair(hit.key);
+    Contact c{};
+    c.key = hit.key;
+    c.s = hit.s;
+    c.normal = hit.normal;
+    c.gap = dot(hit.normal, apply(hit.s, maker.x));
+    c.area = maker.carrying_area(edge_edge ? maker.areas.of_edges(pair)
+                                           : maker.areas.of_vertex_face(pair));
+    c.friction = maker.coefficient(hit.s, maker.touches_obstacle(hit.s));
+
+    // A pair that starts closer than h comes no closer, but is not driven apart either: the normal
+    // at the time of impact may lead along the layers.
+    c.thickness = std::fmin(maker.thickness, std::fmax(c.gap, hit.offset));
+    contacts[i] = c;
   }
 };
 
@@ -341,7 +378,7 @@ void Proximity::keep_friction(State& state, const Parameters& parameters, Real d
   state.held.resize(0);
   if (!rubs_) return;
   const ContactLaw law{static_cast<Real>(parameters.proximity.stiffness), dt};
-  collect("proximity.keep_friction", contacts_.size(),
+  collect("proximity.keep_friction", found_at_start_,
           KeepFriction{contacts_.view(), state.x0.view(), state.x1.view(), law}, state.held);
 }
 
@@ -353,6 +390,7 @@ void Proximity::recall_friction(const State& state) {
 
 void Proximity::clear() {
   contacts_.resize(0);
+  found_at_start_ = 0;
   rubs_ = false;
 }
 
@@ -361,6 +399,14 @@ void Proximity::add(const Array<Contact>& more) {
   contacts_.resize_keep(old + more.size());
   for_each("proximity.add", more.size(),
            CopyContacts{more.view(), contacts_.view().sub(old, more.size())});
+}
+
+void Proximity::add(const SubstepContext& step, const Array<Impact>& impacts) {
+  const Index old = contacts_.size();
+  contacts_.resize_keep(old + impacts.size());
+  for_each("proximity.add", impacts.size(),
+           ContactOfImpact{contact_maker(step, {}), impacts.view(),
+                           contacts_.view().sub(old, impacts.size())});
 }
 
 void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const LetGoView& let_go) {
@@ -372,18 +418,17 @@ void Proximity::find(SubstepContext& step, const BroadPhase& broad_phase, const 
   rubs_ = maker.friction_cloth > 0 || maker.friction_obstacle > 0 || !mesh.object_friction.empty();
   contacts_.resize(0);
   const Array<Pair>& vf = broad_phase.vertex_faces();
-  collect("proximity.vertex_face", vf.size(),
-          FindVertexFace{maker, vf.view(), mesh.face.view(), mesh.vertex_area.view(),
-                         mesh.face_area.view()},
+  collect("proximity.vertex_face", vf.size(), FindVertexFace{maker, vf.view(), mesh.face.view()},
           found_);
   append_sorted_("proximity.sort", found_, contacts_);
   const Array<Pair>& ee = broad_phase.edge_edges();
-  collect("proximity.edge_edge", ee.size(),
-          FindEdgeEdge{maker, ee.view(), mesh.edge.view(), mesh.edge_area.view()}, found_);
+  collect("proximity.edge_edge", ee.size(), FindEdgeEdge{maker, ee.view(), mesh.edge.view()},
+          found_);
   append_sorted_("proximity.sort", found_, contacts_);
 
   // Friction goes on where the last step left it, and layers that start very close are pushed apart
   // little by little.
+  found_at_start_ = contacts_.size();
   recall_friction(s);
   if (step.time == 0) note_start_gaps(step);
   if (step.time >= kRampTime) s.start_gap.resize(0);

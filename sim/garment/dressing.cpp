@@ -17,6 +17,7 @@ namespace {
 constexpr double kTimeStep = 0.005;     // [s]
 constexpr int kStepsBetweenRests = 20;  // then the velocities are halved
 constexpr int kStepsBetweenLooks = 10;  // at the strain
+constexpr double kMostTravel = 2;  // in a substep [edges]: seams pull fast, and friction decides
 constexpr double kClosingBending = 30;  // times as stiff, so that no hem flips or rolls up
 constexpr double kClosedStrain = 0.05;  // of a garment whose seams are drawn together
 constexpr double kWeightless = 0.1;     // time for the seams to meet [s]
@@ -33,6 +34,7 @@ constexpr double kRefinedTime = 0.1;   // to settle after the triangles were div
 Parameters dressing_parameters(const Parameters& own) {
   Parameters p = own;
   p.step.time_step = kTimeStep;
+  p.step.max_travel = std::min(own.step.max_travel, kMostTravel);
   p.implicit.integrator = Integrator::backward_euler;
   p.gravity = {.x = 0, .y = 0, .z = 0};
   p.wind = {.x = 0, .y = 0, .z = 0, .air_density = 0, .air_drag = 0};

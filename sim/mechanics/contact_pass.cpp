@@ -16,6 +16,11 @@ struct Travel {
   ICLOTH_HD void operator()(Index i) const { travel[i] = motion.travel(contacts[i], dv); }
 };
 
+struct NoTerm {
+  View<ContactTerm> term;
+  ICLOTH_HD void operator()(Index i) const { term[i] = ContactTerm{}; }
+};
+
 /// How far the contact forces of a solve are from those of the contact law at its solution.
 struct ContactError {
   double error;  ///< contact forces that acted and should not have, or the other way round [N]
@@ -198,8 +203,13 @@ void ContactPasses::start(SubstepContext& step, const ContactSystem& system,
                           const VertexMotion& motion, View<const Vec3r> dv, bool solved) {
   const Index vertices = step.mesh.cloth_vertices, contacts = system.contacts.size();
   couplings_.clear();
-  terms_.resize(contacts);
   travels_.resize(contacts);
+
+  // Contacts that were added since the last solve did not act in it.
+  const Index known = solved ? terms_.size() : contacts;
+  terms_.resize_keep(contacts);
+  for_each("implicit.contact_terms", contacts - known,
+           NoTerm{terms_.view().sub(known, contacts - known)});
   for_each("implicit.contact_travel", contacts,
            Travel{motion, system.contacts.view(), dv, travels_.view()});
   inverse_diagonal_.resize(vertices);

@@ -175,61 +175,76 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
 
   // The first iteration linearises at x0, as the paper does.
   const View<const Vec3r> x0 = step.state.x0.view(), free_motion = free_motion_.view();
-  const Linearization start{.start = x0,
-                            .at = x0,
-                            .predicted = free_motion,
-                            .v = rule_.remembers() ? free_velocity_.view() : step.state.v.view(),
-                            .dt = rule_.h};
-  ForceContext context{.mesh = step.mesh,
-                       .parameters = step.parameters,
-                       .state = step.state,
-                       .point = start,
-                       .free_motion = free_motion};
+  point_ = {.start = x0,
+            .at = x0,
+            .predicted = free_motion,
+            .v = rule_.remembers() ? free_velocity_.view() : step.state.v.view(),
+            .dt = rule_.h};
+  iteration_ = 0;
 
   // The springs of open seams are linear, hence the same in every iteration.
-  seams_.assemble(step, free_motion, start.v, rule_.h);
+  seams_.assemble(step, free_motion, point_.v, rule_.h);
 
   // How much the motion without forces turns the faces says whether one linearisation will do.
-  linearization_error_ = p.newton_iterations > 1 ? find_linearization_error(context) : 0;
+  linearization_error_ = p.newton_iterations > 1 ? find_linearization_error(step) : 0;
   renew_no_face(step);
+  linearize(step);
+  find_candidate(step, proximity, false);
+}
 
-  // Later iterations of Newton's method linearise at the candidate, until the tension is accurate.
-  for (int iteration = 1;; ++iteration) {
-    assembly_.assemble(context);
-    ++step.report.newton_iterations;
-    const auto solve_and_move = [&](const ContactGoal& goal, bool solved) {
-      contacts_.solve(step,
-                      {.matrix = assembly_.matrix(),
-                       .rhs = assembly_.rhs(),
-                       .contacts = proximity.contacts(),
-                       .seams = seams_.couplings(),
-                       .free_motion = free_motion,
-                       .h = rule_.h},
-                      goal, dv_.view(), solved);
-      move(step);
-      linearization_error_ = find_linearization_error(context);
-    };
+/// The linear system is still that of the candidate; what it lacked are the contacts.
+void Implicit::integrate_again(SubstepContext& step, const Proximity& proximity) {
+  find_candidate(step, proximity, true);
+}
 
+void Implicit::linearize(SubstepContext& step) {
+  assembly_.assemble(context(step));
+  ++step.report.newton_iterations;
+  ++iteration_;
+}
+
+/// Newton's method: it linearises at the candidate again until the tension is accurate. `solved`:
+/// dv_ solves the system without contacts that were added since.
+void Implicit::find_candidate(SubstepContext& step, const Proximity& proximity, bool solved) {
+  const ImplicitParameters& p = step.parameters.implicit;
+  const ContactGoal fair{p.contact_tolerance, p.cg_tolerance};
+  for (;; solved = true) {
     // A solution at which the system is going to be linearised again is a draft. The candidate
     // shows how much tension the linearisation left out.
-    const ContactGoal fair{p.contact_tolerance, p.cg_tolerance};
     const bool draft =
-        iteration < p.newton_iterations && linearization_error_ > kDraftError * p.newton_tolerance;
-    solve_and_move(draft ? draft_of(fair) : fair, iteration > 1);
-    if (draft && !(linearization_error_ > p.newton_tolerance)) solve_and_move(fair, true);
+        iteration_ < p.newton_iterations && linearization_error_ > kDraftError * p.newton_tolerance;
+    solve(step, proximity, draft ? draft_of(fair) : fair, solved);
+    if (draft && !(linearization_error_ > p.newton_tolerance)) solve(step, proximity, fair, true);
     if (!(linearization_error_ > p.newton_tolerance)) break;
-    if (iteration >= p.newton_iterations) {
+    if (iteration_ >= p.newton_iterations) {
       step.report.reach(Limit::newton_iterations);
       break;
     }
-    linearize_at_candidate(context);
+    linearize_at_candidate(step);
+    linearize(step);
   }
   step.report.cg_residual = std::max(step.report.cg_residual, contacts_.residual());
 
   // Work is that of the forces as they were linearised last, since these made the motion.
   if (step.sums_up_work)
-    outer_work_ = assembly_.work(context, dv_.view()) +
-                  seams_.work(free_motion, dv_.view(), step.state.inverse_mass.view(), rule_.h);
+    outer_work_ =
+        assembly_.work(context(step), dv_.view()) +
+        seams_.work(free_motion_.view(), dv_.view(), step.state.inverse_mass.view(), rule_.h);
+}
+
+/// Solves the present linear system and moves the vertices.
+void Implicit::solve(SubstepContext& step, const Proximity& proximity, const ContactGoal& goal,
+                     bool solved) {
+  contacts_.solve(step,
+                  {.matrix = assembly_.matrix(),
+                   .rhs = assembly_.rhs(),
+                   .contacts = proximity.contacts(),
+                   .seams = seams_.couplings(),
+                   .free_motion = free_motion_.view(),
+                   .h = rule_.h},
+                  goal, dv_.view(), solved);
+  move(step);
+  linearization_error_ = find_linearization_error(step);
 }
 
 /// Writes free_motion_ and, where the rule remembers the step before, free_velocity_.
@@ -280,31 +295,31 @@ void Implicit::renew_no_face(const SubstepContext& step) {
   to_renew_.fill(0);
 }
 
-double Implicit::find_linearization_error(const ForceContext& context) {
-  const Topology& mesh = context.mesh;
-  const ImplicitParameters& p = context.parameters.implicit;
+double Implicit::find_linearization_error(const SubstepContext& step) {
+  const Topology& mesh = step.mesh;
+  const ImplicitParameters& p = step.parameters.implicit;
   const double allowed = std::min(p.newton_tolerance, p.max_linearization_error);
   return static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
                                     LinearizationError{.face = mesh.face.view(),
                                                        .inverse = mesh.face_inverse.view(),
                                                        .face_fabric = mesh.face_fabric.view(),
                                                        .fabric = mesh.fabric.view(),
-                                                       .point = context.point,
+                                                       .point = point_,
                                                        .dv = dv_.view(),
                                                        .allowed = static_cast<Real>(allowed),
                                                        .to_renew = to_renew_.view()},
                                     Max{}));
 }
 
-void Implicit::linearize_at_candidate(ForceContext& context) {
-  const Index vertices = context.mesh.cloth_vertices;
-  at_.copy_from(context.state.candidate);
+void Implicit::linearize_at_candidate(const SubstepContext& step) {
+  const Index vertices = step.mesh.cloth_vertices;
+  at_.copy_from(step.state.candidate);
   predicted_.resize(vertices);
   for_each("implicit.predicted", vertices, PredictedMotion{dv_.view(), predicted_.view(), rule_.h});
-  context.point.at = at_.view();
-  context.point.predicted = predicted_.view();
+  point_.at = at_.view();
+  point_.predicted = predicted_.view();
   renewed_.copy_from(to_renew_);
-  context.point.renewed = renewed_.view();
+  point_.renewed = renewed_.view();
 }
 
 void Implicit::finish_substep(State& state) {

@@ -28,6 +28,8 @@ class Implicit {
 
   /// Writes state.candidate and the cloth part of state.x1.
   void integrate(SubstepContext& step, const Proximity& proximity);
+  /// Goes on from the candidate of this substep after contacts were added to it.
+  void integrate_again(SubstepContext& step, const Proximity& proximity);
 
   const Forces& forces() const { return assembly_.forces(); }
 
@@ -45,15 +47,28 @@ class Implicit {
  private:
   void move_freely(const SubstepContext& step);
   void renew_no_face(const SubstepContext& step);
+  void linearize(SubstepContext& step);
+  void find_candidate(SubstepContext& step, const Proximity& proximity, bool solved);
+  void solve(SubstepContext& step, const Proximity& proximity, const ContactGoal& goal,
+             bool solved);
   void move(SubstepContext& step);
-  double find_linearization_error(const ForceContext& context);
-  void linearize_at_candidate(ForceContext& context);
+  double find_linearization_error(const SubstepContext& step);
+  void linearize_at_candidate(const SubstepContext& step);
+  ForceContext context(const SubstepContext& step) const {
+    return {.mesh = step.mesh,
+            .parameters = step.parameters,
+            .state = step.state,
+            .point = point_,
+            .free_motion = free_motion_.view()};
+  }
 
   Assembly assembly_;
   ContactPasses contacts_;
   SeamSprings seams_;
   Array<Vec3r> dv_;           ///< Δv [m/s] (cloth_vertices + kPadding)
   TimeRule rule_{};           ///< of the substep, integrate
+  Linearization point_{};     ///< the present one of the substep
+  int iteration_ = 0;         ///< of Newton's method in the substep, 1 at x0
   Array<Vec3r> free_motion_;  ///< x1 − x0 with Δv = 0 [m] (vertices), move_freely
   Array<Vec3r>
       free_velocity_;  ///< v', where the rule remembers [m/s] (cloth_vertices), move_freely

@@ -20,7 +20,7 @@ enum class Integrator { backward_euler, bdf2 };
 struct StepParameters {
   double time_step = 0.01;
   int max_substep_levels = 6;
-  double max_travel = 2.0;
+  double max_travel = 10.0;
 };
 
 struct GravityParameters {
@@ -51,6 +51,7 @@ struct ProximityParameters {
   double stiffness = 1e6;
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
+  int late_rounds = 1;
 };
 
 struct ImplicitParameters {

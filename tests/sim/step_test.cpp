@@ -154,6 +154,36 @@ TEST_P(Builds, ImpactZonesAloneHoldTheClothToo) {
   run_cleanly(*simulator, 40);
 }
 
+TEST(LateContacts, LeaveFewImpactsOfFastClothToTheZones) {
+  // Two sheets fall onto a ball so fast that they reach it, and each other, within a step.
+  const auto impacts = [](int rounds) {
+    auto scene = new_scene();
+    scene->cloths.push_back(make_sheet(lying(0.4, 1500), {0.01, 0.14, 0.02}));
+    scene->cloths.push_back(make_sheet(lying(0.4, 1500), {0, 0.16, 0}));
+    scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 1280), {}));
+    scene->parameters.proximity.late_rounds = rounds;
+    const auto simulator = make_simulator(Build::cpu64, scene);
+    Snapshot state = simulator->snapshot();
+    const std::size_t cloth = 2 * scene->cloths[0].mesh.positions.size();
+    for (std::size_t i = 0; i < cloth; ++i) state.v[i].y = -4;
+    simulator->restore(state);
+
+    // They reach the ball in the second step. Without late contacts it has to be cut.
+    std::int64_t sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const StepReport report = simulator->step({});
+      EXPECT_TRUE(report.accepted);
+      EXPECT_TRUE(report.substeps == 1 || rounds == 0);
+      EXPECT_EQ(count_intersections(*simulator), 0u);
+      sum += report.impacts_first;
+    }
+    return sum;
+  };
+  const std::int64_t without = impacts(0), with = impacts(1);
+  EXPECT_GT(without, 50);
+  EXPECT_LT(with, without / 5);
+}
+
 /// Steps in which impacts are resolved, and the states after each.
 std::vector<std::uint64_t> hashes(Simulator& simulator, int steps, std::int64_t& rounds) {
   std::vector<std::uint64_t> out;

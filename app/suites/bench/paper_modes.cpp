@@ -71,6 +71,7 @@ void add_counts(std::vector<PaperMode>& modes) {
 void single_attempt(Parameters& p, int rounds) {
   p.step.max_substep_levels = 0;
   p.step.max_travel = 100;
+  p.proximity.late_rounds = 0;
   p.impact_zones.max_correction = 100;
   p.impact_zones.max_rounds = rounds;
 }
