@@ -9,6 +9,7 @@
 #include "kernels/parallel/reserve.h"
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/fabrics.h"
+#include "sim/state/stillness.h"
 #include "sim/state/upload.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -154,8 +155,10 @@ void Solver::set_parameters(const Parameters& parameters) {
   state_.mass.upload(mass);
   state_.inverse_mass.upload(inverse);
 
-  // The energy depends on the parameters, and a new thickness needs other boxes.
+  // The energy depends on the parameters, still cloth may start to move, and a new thickness needs
+  // other boxes.
   energy_.reset();
+  disturb(state_);
   broad_phase_.invalidate(state_);
 }
 
@@ -236,6 +239,7 @@ void Solver::rest_cloth() {
   for_each("step.rest", mesh_.cloth_vertices, Rest{state_.v.view()});
   state_.held.resize(0);
   state_.past.forget();
+  disturb(state_);
   energy_.reset();
 }
 

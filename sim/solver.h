@@ -46,6 +46,7 @@ class Solver final : public Simulator {
  private:
   // sim/step.cpp
   void begin_step(std::span<const InputEvent> events, StepReport& report);
+  bool sleeps(std::span<const InputEvent> events, StepReport& report);
   bool run_substeps(StepReport& report);
   void finish_step(StepReport& report);
   void report_end_state(StepReport& report);

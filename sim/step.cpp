@@ -18,12 +18,14 @@
 //   stays where it was. Where bodies overlap, the cloth between them is let go from one of them
 //   (sim/collision/pinch.h). Other penetrations are never accepted.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "sim/mechanics/energy.h"
 #include "sim/mechanics/yarns.h"
 #include "sim/solver.h"
+#include "sim/state/stillness.h"
 #include "sim/substep_clock.h"
 
 namespace icloth::ICLOTH_BUILD {
@@ -51,7 +53,7 @@ StepReport Solver::step(std::span<const InputEvent> events) {
 
   timed(report.ms_total, [&] {
     begin_step(events, report);
-    report.accepted = run_substeps(report);
+    report.accepted = sleeps(events, report) || run_substeps(report);
     finish_step(report);
     report_end_state(report);
     grow_reserve();
@@ -66,6 +68,30 @@ void Solver::begin_step(std::span<const InputEvent> events, StepReport& report) 
   match_yarns(mesh_, parameters_, state_);
   use_hands(events, report);
   save_start();
+}
+
+/// True where the cloth is still and nothing touches it: the step changes nothing but the clock.
+/// What is about to touch it ends its sleep.
+bool Solver::sleeps(std::span<const InputEvent> events, StepReport& report) {
+  const auto is_open = [](const SeamProgress& seam) { return seam.welded == 0; };
+  if (!parameters_.step.sleep || !events.empty() || !hands_.empty() || !state_.let_go.empty() ||
+      std::ranges::any_of(state_.seams, is_open)) {
+    disturb(state_);
+    return false;
+  }
+  if (!is_still(state_)) return false;
+
+  // Bodies are posed at the end of the step to see whether they move.
+  begin_substep(state_.time, report.dt);
+  const bool move = bodies_move(mesh_, state_);
+  back_to_substep_start();
+  if (move) {
+    disturb(state_);
+    return false;
+  }
+  report.substeps = 0;
+  report.min_gap = parameters_.proximity.thickness;
+  return true;
 }
 
 /// False when a substep was refused that cannot be halved any more.
@@ -106,6 +132,7 @@ void Solver::finish_step(StepReport& report) {
   report.no_room = false;
   watch_seams(mesh_, parameters_, state_);
   advance_clocks(report.dt);
+  if (parameters_.step.sleep && report.substeps > 0) watch_stillness(mesh_, state_);
   report.step = ++state_.step;
 }
 

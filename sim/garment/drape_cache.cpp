@@ -204,7 +204,9 @@ void remove_oldest_drapes(const std::string& folder) {
 std::string drape_key(const Scene& scene) {
   Fingerprint print;
   print.add(std::string(ICLOTH_SOLVER_SUM));
-  print.add(dump_parameters(scene.parameters));
+  Parameters parameters = scene.parameters;
+  parameters.step.sleep = false;  // dressing does not sleep
+  print.add(dump_parameters(parameters));
   for (const Cloth& cloth : scene.cloths) add_cloth(print, cloth);
   for (const Garment& garment : scene.garments) add_garment(print, garment);
 

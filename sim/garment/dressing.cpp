@@ -35,6 +35,7 @@ Parameters dressing_parameters(const Parameters& own) {
   Parameters p = own;
   p.step.time_step = kTimeStep;
   p.step.max_travel = std::min(own.step.max_travel, kMostTravel);
+  p.step.sleep = false;
   p.implicit.integrator = Integrator::backward_euler;
   p.gravity = {.x = 0, .y = 0, .z = 0};
   p.wind = {.x = 0, .y = 0, .z = 0, .air_density = 0, .air_drag = 0};

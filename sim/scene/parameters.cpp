@@ -101,6 +101,10 @@ constexpr ParameterInfo kTable[] = {
     {"step.max_travel", "travel in a substep", "edges", field<&Step::max_travel>(), 0.1, 100, true,
      "fast motion is cut into more substeps: fewer, shallower impacts",
      "fewer substeps; more contacts are found late, and impacts are deeper", "measured on Funnel"},
+    {"step.sleep", "sleep at rest", "", field<&Step::sleep>(), 0, 1, false,
+     "off: every step is computed",
+     "on: cloth that was still for 3 s is left alone until something touches or changes it",
+     "own choice; on in the window"},
 
     {"gravity.x", "gravity x", "m/s²", field<&Gravity::x>(), -100, 100, false, "pull towards −x",
      "pull towards +x", "Y is up"},

@@ -21,6 +21,7 @@ struct StepParameters {
   double time_step = 0.01;
   int max_substep_levels = 6;
   double max_travel = 10.0;
+  bool sleep = false;
 };
 
 struct GravityParameters {

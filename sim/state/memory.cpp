@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "bytes are written as they lie");
 
 constexpr char kMagic[8] = {'I', 'C', 'L', 'O', 'T', 'H', 'M', 'E'};
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::size_t kHead = sizeof kMagic + sizeof kVersion + sizeof(std::uint64_t);
 constexpr std::size_t kTail = sizeof(std::uint64_t);
 

@@ -129,6 +129,11 @@ struct MemoryOf {
   List<typename Storage::Box> trusted_start, trusted_end;
   bool trusted_complete = false;  ///< the lists hold all pairs of the boxes, not the dirty alone
 
+  /// Where the cloth was when it was last seen to move [m] (cloth_vertices), and when [s]
+  /// (sim/state/stillness.h); empty without step.sleep.
+  List<Vec3<Real>> still_x;
+  double still_since = 0;
+
   List<LetGo> let_go;  ///< sorted by vertex and body, mostly empty
 
   List<StitchStateOf<Real>> stitches;  ///< of the pairs of open seams
@@ -175,10 +180,13 @@ void for_each_part(const Visit& visit, Memory&... m) {
   visit(MemoryPart{"stitches", Extent::stitches}, m.stitches...);
   visit(MemoryPart{"seams", Extent::seams}, m.seams...);
 
-  // The rest are the boxes of the candidate lists, the vertices let go from bodies, and the hands.
+  // The rest are the boxes of the candidate lists, how long the cloth has been still, the vertices
+  // let go from bodies, and the hands.
   visit(MemoryPart{"trusted_start", Extent::vertices, true}, m.trusted_start...);
   visit(MemoryPart{"trusted_end", Extent::vertices, true}, m.trusted_end...);
   visit(MemoryPart{"trusted_complete", Extent::single}, m.trusted_complete...);
+  visit(MemoryPart{"still_x", Extent::cloth_vertices, true}, m.still_x...);
+  visit(MemoryPart{"still_since", Extent::single}, m.still_since...);
   visit(MemoryPart{"let_go", Extent::any}, m.let_go...);
   visit(MemoryPart{"hands", Extent::any}, m.hands...);
 }

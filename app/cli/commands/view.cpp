@@ -25,11 +25,14 @@ std::unique_ptr<SceneOpening> start_opening(const SimulationOptions& options) {
   });
 }
 
+/// In a window, cloth at rest is not computed. Settings that users give come later and count.
+const std::string kWindowSetting = "step.sleep=on";
+
 /// The options for another scene: what was said about the first one's parameters does not fit it.
 ViewOptions options_for(const ViewOptions& first, const std::string& scene) {
   ViewOptions options = first;
   options.simulation.scene = scene;
-  options.simulation.overrides.clear();
+  options.simulation.overrides = {kWindowSetting};
   options.simulation.preset.clear();
   options.simulation.repair_start = false;
   return options;
@@ -105,7 +108,10 @@ int run_view(const ViewOptions& options) {
   std::string reason;
   if (!build_available(build, &reason))
     throw DeviceError(std::string(build_name(build)) + " is not available: " + reason);
-  WindowProgram(options, build).run();
+  ViewOptions in_window = options;
+  std::vector<std::string>& overrides = in_window.simulation.overrides;
+  overrides.insert(overrides.begin(), kWindowSetting);
+  WindowProgram(in_window, build).run();
   return 0;
 }
 

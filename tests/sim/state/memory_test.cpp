@@ -39,8 +39,9 @@ Snapshot full_snapshot() {
   s.held = {{7, vector(), 1}, {1u << 31, vector(), 0}};
   for (int k = 0; k < 3; ++k) {
     s.past.motion.push_back(vector()), s.past.change.push_back(vector());
-    s.start_gap.push_back(number());
+    s.start_gap.push_back(number()), s.still_x.push_back(vector());
   }
+  s.still_since = 0.07;
   s.past.dt = 0.01;
   s.yarns = {{{number(), number(), number()}, number()}};
   s.yarns_bend = true;
@@ -188,7 +189,7 @@ TEST(Memory, RefusesOtherFilesAndVersions) {
   EXPECT_NE(refusal(other).find("ICLOTHME"), std::string::npos);
   other = memory_to_bytes(full_snapshot());
   put(other, 8, std::uint32_t{1});
-  EXPECT_NE(refusal(other).find("version 1, expected 5"), std::string::npos);
+  EXPECT_NE(refusal(other).find("version 1, expected 6"), std::string::npos);
 }
 
 TEST(Memory, CountsTheBytesOfItsLists) {
