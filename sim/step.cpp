@@ -239,9 +239,9 @@ bool Solver::resolve_by_zones(SubstepContext& step) {
   impact_zones_.begin_substep();
 
   // Each round solves the zones of the impacts that are left, until none is.
+  report.impacts_first += report.impacts_left;
   for (int round = 0;; ++round) {
     if (round > 0) find_impacts(step, false);
-    if (round == 0) report.impacts_first += report.impacts_left;
     report.impacts_in_rounds.push_back(report.impacts_left);
     if (report.impacts_left == 0) return true;
     if (!parameters_.impact_zones.enabled) return false;

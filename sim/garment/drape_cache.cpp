@@ -1,5 +1,7 @@
 #include "sim/garment/drape_cache.h"
 
+#include <icloth_solver_sum.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +14,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include "icloth_solver_sum.h"
 #include "kernels/index.h"
 #include "sim/files/error.h"
 #include "sim/files/file_io.h"

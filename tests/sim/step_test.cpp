@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "kernels/index.h"
-#include "sim/scene/intersections.h"
-#include "sim/scene/scene_meshes.h"
 #include "sim/simulator.h"
+#include "tests/support/intersections.h"
 #include "tests/support/small_scenes.h"
 
 namespace icloth {
 namespace {
 
+using testing::count_intersections;
 using testing::hanging;
 using testing::lying;
 using testing::make_obstacle;
@@ -34,11 +34,6 @@ std::shared_ptr<Scene> ball_scene(Index triangles = 300) {
   scene->cloths.push_back(make_sheet(lying(0.4, triangles), {0.01, 0.112, 0.02}));
   scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 320), {}));
   return scene;
-}
-
-std::size_t count_intersections(const Simulator& simulator) {
-  const SceneFaces soup = scene_faces(simulator.scene());
-  return find_intersections(simulator.snapshot().x1, soup.faces, soup.group).size();
 }
 
 /// Steps that must be accepted, without a crossing pair of faces after any of them.
@@ -152,36 +147,6 @@ TEST_P(Builds, ImpactZonesAloneHoldTheClothToo) {
   scene->parameters.proximity.enabled = false;
   const auto simulator = make(scene);
   run_cleanly(*simulator, 40);
-}
-
-TEST(LateContacts, LeaveFewImpactsOfFastClothToTheZones) {
-  // Two sheets fall onto a ball so fast that they reach it, and each other, within a step.
-  const auto impacts = [](int rounds) {
-    auto scene = new_scene();
-    scene->cloths.push_back(make_sheet(lying(0.4, 1500), {0.01, 0.14, 0.02}));
-    scene->cloths.push_back(make_sheet(lying(0.4, 1500), {0, 0.16, 0}));
-    scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 1280), {}));
-    scene->parameters.proximity.late_rounds = rounds;
-    const auto simulator = make_simulator(Build::cpu64, scene);
-    Snapshot state = simulator->snapshot();
-    const std::size_t cloth = 2 * scene->cloths[0].mesh.positions.size();
-    for (std::size_t i = 0; i < cloth; ++i) state.v[i].y = -4;
-    simulator->restore(state);
-
-    // They reach the ball in the second step. Without late contacts it has to be cut.
-    std::int64_t sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const StepReport report = simulator->step({});
-      EXPECT_TRUE(report.accepted);
-      EXPECT_TRUE(report.substeps == 1 || rounds == 0);
-      EXPECT_EQ(count_intersections(*simulator), 0u);
-      sum += report.impacts_first;
-    }
-    return sum;
-  };
-  const std::int64_t without = impacts(0), with = impacts(1);
-  EXPECT_GT(without, 50);
-  EXPECT_LT(with, without / 5);
 }
 
 /// Steps in which impacts are resolved, and the states after each.
