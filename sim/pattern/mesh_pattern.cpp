@@ -19,7 +19,9 @@ namespace {
 constexpr int kMostDivisions = 12;  ///< rounds in which edges that are missing are divided
 constexpr double kDense = 0.8;      ///< mean of the outline's edges, below which a panel is finer
 constexpr double kDensest = 0.4;    ///< shortest edge length inside of such a panel
-constexpr std::size_t kMostNotes = 5;  ///< of one kind
+constexpr std::size_t kMostNotes = 5;     ///< of one kind
+constexpr double kCountTolerance = 0.01;  ///< share by which the number of triangles may differ
+constexpr int kMostCorrections = 3;       ///< of the edge length, to get a number of triangles
 
 std::string cm(double metres) { return rounded_text(100 * metres) + " cm"; }
 
@@ -294,6 +296,33 @@ double edge_length_for(const Pattern& pattern, Index triangles) {
   double area = 0;
   for (const Panel& panel : pattern.panels) area += std::fabs(signed_area(panel));
   return std::sqrt(2.31 * area / std::max<double>(triangles, 1));
+}
+
+Index triangle_count(const MeshedPattern& meshed) {
+  std::size_t count = 0;
+  for (const PanelMesh& panel : meshed.panels) count += panel.faces.size();
+  return static_cast<Index>(count);
+}
+
+MeshedPattern mesh_with_count(const Pattern& pattern, Index triangles) {
+  const auto ratio = [&](const MeshedPattern& meshed) {
+    return triangle_count(meshed) / static_cast<double>(triangles);
+  };
+  const auto miss = [&](const MeshedPattern& meshed) { return std::fabs(ratio(meshed) - 1); };
+  MeshedPattern best = mesh_pattern(pattern, edge_length_for(pattern, triangles));
+
+  // Outlines are cut into whole numbers of edges, so that the estimate misses by some per cent. A
+  // length that is corrected by what came out misses by less, except in the coarsest meshes.
+  for (int i = 0; i < kMostCorrections && miss(best) > kCountTolerance; ++i) {
+    try {
+      MeshedPattern next = mesh_pattern(pattern, best.edge_length * std::sqrt(ratio(best)));
+      if (miss(next) >= miss(best)) break;
+      best = std::move(next);
+    } catch (const InputError&) {
+      break;  // the pattern cannot be meshed with that length
+    }
+  }
+  return best;
 }
 
 }  // namespace icloth

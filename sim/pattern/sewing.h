@@ -40,6 +40,13 @@ MeshedPattern mesh_pattern(const Pattern& pattern, double edge_length);
 /// Edge length [m] with which the whole pattern gets about so many triangles: √(2.31 area / N).
 double edge_length_for(const Pattern& pattern, Index triangles);
 
+/// Meshes all panels with `triangles` in all, within 1 % where an edge length for that is found.
+/// Throws InputError as mesh_pattern does.
+MeshedPattern mesh_with_count(const Pattern& pattern, Index triangles);
+
+/// Number of triangles of all panels.
+Index triangle_count(const MeshedPattern& meshed);
+
 /// A seam of the garment: one stitch of the pattern. Vertices are those of the open mesh.
 struct SewnSeam {
   Index panel_a = 0, edge_a = 0, panel_b = 0, edge_b = 0;

@@ -11,8 +11,7 @@ namespace icloth {
 namespace {
 
 std::shared_ptr<const MeshedPattern> mesh_with(const Pattern& pattern, Index triangles) {
-  return std::make_shared<const MeshedPattern>(
-      mesh_pattern(pattern, edge_length_for(pattern, triangles)));
+  return std::make_shared<const MeshedPattern>(mesh_with_count(pattern, triangles));
 }
 
 /// Meshes the pattern coarse and divides it until it has about so many triangles. Does nothing and

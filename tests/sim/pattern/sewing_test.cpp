@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 
+#include "sim/files/assets.h"
 #include "sim/files/error.h"
 #include "sim/pattern/outline.h"
 #include "tests/sim/pattern/pattern_support.h"
@@ -309,6 +310,26 @@ TEST(Sewing, TheNumberOfTrianglesIsAboutThatAskedFor) {
     const SewnGarment garment = sew_pattern(pattern, edge_length_for(pattern, wanted));
     EXPECT_NEAR(static_cast<double>(garment.mesh.faces.size()), wanted, 0.1 * wanted);
   }
+}
+
+TEST(Sewing, TheNumberOfTrianglesIsCorrectedByWhatCameOut) {
+  for (const char* name : {"tiered", "andy_trousers", "andy_shirt", "bishop_skirt", "flounce"}) {
+    const std::string file = "garments/" + std::string(name) + "_specification.json";
+    const Pattern pattern = read_pattern(find_asset(file, ""));
+    for (const Index wanted : {5000, 9000}) {
+      const MeshedPattern estimated = mesh_pattern(pattern, edge_length_for(pattern, wanted));
+      const double before = std::fabs(triangle_count(estimated) - wanted);
+      const double after = std::fabs(triangle_count(mesh_with_count(pattern, wanted)) - wanted);
+      EXPECT_LE(after, std::min(before, 0.015 * wanted)) << name << ", " << wanted;
+    }
+  }
+}
+
+TEST(Sewing, APatternThatCannotBeMeshedCoarserKeepsItsFinerMesh) {
+  // The outline needs about as many triangles as it has edges, whatever is asked for.
+  const Pattern pattern = read_pattern(find_asset("garments/tiered_specification.json", ""));
+  const MeshedPattern meshed = mesh_with_count(pattern, 10);
+  EXPECT_GT(triangle_count(meshed), 10);
 }
 
 TEST(Sewing, EdgeLengthsOutOfRangeAreRefused) {
