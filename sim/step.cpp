@@ -223,6 +223,7 @@ bool Solver::resolve_by_contacts(SubstepContext& step, bool last_resort) {
   if (!parameters_.proximity.enabled) return true;
   for (int round = 0; round < parameters_.proximity.late_rounds; ++round) {
     if (report.impacts_left < kFewImpacts) return true;
+    report.late_contacts += report.impacts_left;
 
     // The motion and the state of the contacts so far are where the solve goes on from.
     timed(report.ms_proximity, [&] { proximity_.add(step, ccd_.impacts()); });

@@ -86,7 +86,7 @@ std::string RunStatistics::table(std::size_t penetrations, std::uint64_t state_h
     text +=
         formatted("%-22s %12.3f %12.3f %12.3f\n", name, median(name), mean(name), largest(name));
   for (const char* name : {"proximity_pairs", "candidate_pairs", "elementary_tests",
-                           "impacts_first", "rounds", "zones", "cg_iterations"})
+                           "late_contacts", "impacts_first", "rounds", "zones", "cg_iterations"})
     text +=
         formatted("%-22s %12.0f %12.1f %12.0f\n", name, median(name), mean(name), largest(name));
 

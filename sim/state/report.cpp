@@ -54,6 +54,7 @@ constexpr ReportColumn kColumns[] = {
     {"open_pairs", &R::open_pairs},
     {"stuck_pairs", &R::stuck_pairs},
     {"seam_gap", &R::seam_gap},
+    {"late_contacts", &R::late_contacts},
 };
 
 }  // namespace

@@ -29,7 +29,8 @@ struct StepReport {
          ms_impact_zones = 0, ms_other = 0;
   std::int64_t proximity_pairs = 0, candidate_pairs = 0, elementary_tests = 0, impacts_first = 0,
                impacts_left = 0;
-  std::int64_t box_tests = 0;  ///< boxes compared, where broad_phase.count_tests asks for it
+  std::int64_t late_contacts = 0;  ///< impacts of candidates that joined the contacts
+  std::int64_t box_tests = 0;      ///< boxes compared, where broad_phase.count_tests asks for it
   std::int64_t rounds = 0, zones = 0, largest_zone = 0, zone_iterations = 0;
   /// How far the worst zone was from an optimum (kernels/zones/zone_problem.h) [m], [m], relative.
   double zone_violation = 0, zone_complementarity = 0, zone_momentum_residual = 0;

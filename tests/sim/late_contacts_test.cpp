@@ -34,14 +34,16 @@ std::int64_t impacts_of_the_fall(int rounds) {
   for (std::size_t i = 0; i < cloth; ++i) state.v[i].y = -4;
   simulator->restore(state);
 
-  std::int64_t sum = 0;
+  std::int64_t sum = 0, late = 0;
   for (int k = 0; k < 3; ++k) {
     const StepReport report = simulator->step({});
     EXPECT_TRUE(report.accepted);
     EXPECT_TRUE(report.substeps == 1 || rounds == 0);
     EXPECT_EQ(count_intersections(*simulator), 0u);
     sum += report.impacts_first;
+    late += report.late_contacts;
   }
+  EXPECT_EQ(late > 0, rounds > 0);
   return sum;
 }
 

@@ -9,9 +9,9 @@ namespace {
 
 /// The columns of a report that figures need.
 constexpr std::string_view kColumns[] = {
-    "ms_total",        "ms_proximity",     "ms_implicit", "ms_broad_phase", "ms_ccd",
-    "ms_impact_zones", "substeps",         "retries",     "rounds",         "zone_iterations",
-    "impacts_first",   "elementary_tests", "max_strain"};
+    "ms_total",        "ms_proximity",  "ms_implicit",      "ms_broad_phase", "ms_ccd",
+    "ms_impact_zones", "substeps",      "retries",          "rounds",         "zone_iterations",
+    "late_contacts",   "impacts_first", "elementary_tests", "max_strain"};
 
 double value_of(const StepReport& report, std::string_view name) {
   const auto columns = report_columns();

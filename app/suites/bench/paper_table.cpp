@@ -146,29 +146,13 @@ std::string others_text(const Json& result) {
 
 /// Every stretch and every way, with how the machine was meanwhile.
 void add_stretch_table(const PaperResults& results, Report& report) {
-  Table table("stretches", "Stretches, from the same checkpoints",
-              {"benchmark",
-               "steps",
-               "what happens",
-               "clip starts at [s]",
-               "way",
-               "steps made",
-               "steps/s",
-               "ms collisions",
-               "substeps",
-               "retries",
-               "rounds",
-               "zone iterations",
-               "rolled back",
-               "refused",
-               "penetrations",
-               "max strain",
-               "share of the cores",
-               "others' share",
-               "GB/s before",
-               "GB/s after",
-               "quiet",
-               "start hash"});
+  Table table(
+      "stretches", "Stretches, from the same checkpoints",
+      {"benchmark",     "steps",        "what happens",  "clip starts at [s]", "way",
+       "steps made",    "steps/s",      "ms collisions", "substeps",           "retries",
+       "late contacts", "impacts",      "rounds",        "zone iterations",    "rolled back",
+       "refused",       "penetrations", "max strain",    "share of the cores", "others' share",
+       "GB/s before",   "GB/s after",   "quiet",         "start hash"});
   int measured = 0, noisy = 0;
 
   // A row is one way on one stretch.
@@ -200,6 +184,8 @@ void add_stretch_table(const PaperResults& results, Report& report) {
                    format_number(collision_ms(rows) / steps),
                    mean("substeps"),
                    total("retries"),
+                   mean("late_contacts"),
+                   mean("impacts_first"),
                    mean("rounds"),
                    mean("zone_iterations"),
                    total("rolled_back"),

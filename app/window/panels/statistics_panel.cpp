@@ -77,6 +77,7 @@ void draw_counts(const StepReport& r) {
   row("proximity pairs", "%lld", static_cast<Count>(r.proximity_pairs));
   row("candidate pairs", "%lld", static_cast<Count>(r.candidate_pairs));
   row("elementary tests", "%lld", static_cast<Count>(r.elementary_tests));
+  row("late contacts", "%lld", static_cast<Count>(r.late_contacts));
   row("impacts found, left", "%lld, %lld", static_cast<Count>(r.impacts_first),
       static_cast<Count>(r.impacts_left));
   if (r.pinched > 0) row("pinched vertices", "%lld", static_cast<Count>(r.pinched));

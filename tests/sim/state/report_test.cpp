@@ -30,7 +30,8 @@ TEST(Report, ColumnsStandInTheOrderThatFilesPromise) {
             "kinetic_energy elastic_energy gravity_energy max_strain max_speed min_gap "
             "state_hash "
             "zone_violation zone_complementarity zone_momentum_residual box_tests "
-            "momentum_error energy_balance pinched limits open_pairs stuck_pairs seam_gap ");
+            "momentum_error energy_balance pinched limits open_pairs stuck_pairs seam_gap "
+            "late_contacts ");
 }
 
 TEST(Report, EveryColumnReadsItsOwnMember) {
