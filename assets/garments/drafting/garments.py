@@ -104,9 +104,8 @@ def tiered():
     """A yoke and three tiers, each a ring of four flared pieces. The first one is as long as the
     hem of the yoke; the others are gathered."""
     pattern = Pattern('tiered')
-    quarters = (('hem_side-', .25), ('hem_middle', .5), ('hem_side+', .25))
-    front = blocks.yoke('yoke_front', 35, 51, 18, .12, quarters, WAIST)
-    back = blocks.yoke('yoke_back', 35, 51, 18, .12, quarters, WAIST)
+    front = blocks.yoke('yoke_front', 35, 51, 18, .12, QUARTERS, WAIST)
+    back = blocks.yoke('yoke_back', 35, 51, 18, .12, QUARTERS, WAIST)
     front.place((0, 108, 16))
     back.place((0, 108, -18), (0, 180, 0))
     tiers = [tier(1, 25.5, 30, 16, 88, 20), tier(2, 30 * FULL, 46, 20, 69, 26),
@@ -134,6 +133,7 @@ def flounce():
     return pattern
 
 
+QUARTERS = (('hem_side-', .25), ('hem_middle', .5), ('hem_side+', .25))  # of a lower border
 FULL = 1.3  # length of a gathered border over that of the border it is sewn to
 BORDERS = (('hem_b', 'waist_a'), ('hem_a', 'waist_b'))  # that are sewn together
 
@@ -218,12 +218,21 @@ def bishop_blouse():
 
 
 def bishop_skirt():
-    """Three quarters of a circle, in four gores."""
+    """Three quarters of a circle, in four gores, on a straight waistband that holds it above the
+    hips."""
     pattern = Pattern('bishop_skirt')
-    gores = skirt_gores(67.5, 14.2, 60)
-    blocks.place_round(gores, 119, 9, 35)
-    pattern.add(*gores)
+    waist, height = 72, 4
+    front, back = (blocks.yoke('band_' + side, waist / 2, waist / 2, height, 0, QUARTERS, WAIST)
+                   for side in ('front', 'back'))
+    front.place((0, 111, 15))
+    back.place((0, 111, -16), (0, 180, 0))
+    gores = skirt_gores(67.5, waist / math.radians(270), 56)
+    blocks.place_round(gores, 119.5, 9, 35)
+    pattern.add(front, back, *gores)
+    pattern.sew(front, 'seam+', back, 'seam-')
+    pattern.sew(front, 'seam-', back, 'seam+')
     blocks.sew_round(pattern, gores)
+    sew_to_quarters(pattern, front, back, 'hem_middle', 'hem_side', gores)
     return pattern
 
 
