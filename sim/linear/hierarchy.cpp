@@ -18,11 +18,28 @@ constexpr Real kOverestimate = Real(1.5);
 constexpr Index kFirstGroup = 8, kGroup = 4;
 constexpr Index kFewNodes = 64;  // a level of so few is the last
 
-/// Sums up the blocks of one level from those of the finer one.
+/// Notes the nodes of a level below which something was renewed.
+struct RenewedNodes {
+  View<const Index> child_first, child;
+  View<const std::uint8_t> finer;  ///< of the vertices, or of the nodes
+  View<std::uint8_t> renewed;
+  Index first;
+
+  ICLOTH_HD void operator()(Index k) const {
+    const Index i = first + k;
+    std::uint8_t any = 0;
+    for (Index c = child_first[i]; c < child_first[i + 1]; ++c) any |= finer[child[c]];
+    renewed[i] = any;
+  }
+};
+
+/// Sums up the blocks of one level from those of the finer one, where these were renewed.
 struct CoarseBlocks {
-  View<const Index> row, column;  ///< of the finer level
-  const Real* entries;            ///< 9 a block of the finer level
-  View<const Real> live;          ///< mass of the finer rows or its inverse: 0 for prescribed ones
+  View<const Index> to_row, to_column;  ///< of the blocks
+  View<const std::uint8_t> renewed;     ///< (nodes); empty: all
+  View<const Index> row, column;        ///< of the finer level
+  const Real* entries;                  ///< 9 a block of the finer level
+  View<const Real> live;  ///< mass of the finer rows or its inverse: 0 for prescribed ones
   View<const Index> source_first;
   View<const BlockSource> source;
   View<Mat3r> value;
@@ -30,6 +47,7 @@ struct CoarseBlocks {
 
   ICLOTH_HD void operator()(Index k) const {
     const Index block = first + k;
+    if (renewed.size() > 0 && renewed[to_row[block]] == 0 && renewed[to_column[block]] == 0) return;
     Mat3r sum{};
     for (Index s = source_first[block]; s < source_first[block + 1]; ++s) {
       const Index from = source[s].block;
@@ -49,8 +67,10 @@ struct CoarseBlocks {
 };
 
 /// Completes the diagonal block of a node but for contacts. CoarseBlocks has divided the mass by
-/// kOverestimate with the rest, so what is missing of it is added.
+/// kOverestimate with the rest, so what is missing of it is added. A block that was not renewed
+/// loses the contacts that it was given.
 struct AddMass {
+  View<const std::uint8_t> renewed;  ///< (nodes); empty: all
   View<const Index> child_first, child;
   View<const Real> inverse_mass;  ///< of the vertices on the finest level, else empty
   View<const Index> row_first;
@@ -60,9 +80,13 @@ struct AddMass {
 
   ICLOTH_HD void operator()(Index k) const {
     const Index i = first + k;
+    Mat3r& block = value[row_first[i]];
+    if (renewed.size() > 0 && renewed[i] == 0) {
+      block = diagonal[i];
+      return;
+    }
     Real sum = 0;
     for (Index c = child_first[i]; c < child_first[i + 1]; ++c) sum += mass_of(child[c]);
-    Mat3r& block = value[row_first[i]];
     block += Mat3r::identity((1 - 1 / kOverestimate) * sum);
     diagonal[i] = block;
     mass[i] = sum;
@@ -261,15 +285,29 @@ void Hierarchy::set_up(const std::vector<Index>& row_first, const std::vector<In
   source_.upload(layout.source);
 
   // The numbers of a system go into arrays of a fixed size.
+  renewed_.resize(layout.nodes());
   mass_.resize(layout.nodes());
   for (Array<Mat3r>* a : {&diagonal_, &lumped_, &smoother_}) a->resize(layout.nodes());
   for (Array<Vec3r>* a : {&b_, &z_, &t_}) a->resize(layout.nodes() + kPadding);
 }
 
-void Hierarchy::fill_matrix(const SystemView& system) {
+void Hierarchy::fill_matrix(const SystemView& system, View<const std::uint8_t> renewed) {
+  const bool some = renewed.size() > 0;
+  const View<const std::uint8_t> nodes = some ? renewed_.view() : View<const std::uint8_t>{};
   for (int l = 0; l < levels_; ++l) {
+    if (some)
+      for_each("implicit.renewed_nodes", level_[l].count,
+               RenewedNodes{.child_first = child_first_.view(),
+                            .child = child_.view(),
+                            .finer = l == 0 ? renewed : nodes,
+                            .renewed = renewed_.view(),
+                            .first = level_[l].first});
+
     // The finest level sums up the blocks of the system, every other one those of the level before.
-    CoarseBlocks sum{.row = vertex_row_.view(),
+    CoarseBlocks sum{.to_row = node_row_.view(),
+                     .to_column = matrix_.column.view(),
+                     .renewed = nodes,
+                     .row = vertex_row_.view(),
                      .column = system.column,
                      .entries = system.entries,
                      .live = system.inverse_mass,
@@ -288,7 +326,8 @@ void Hierarchy::fill_matrix(const SystemView& system) {
 
     // The masses, which must not be divided by kOverestimate, are added to the diagonals.
     for_each("implicit.coarse_masses", level_[l].count,
-             AddMass{.child_first = child_first_.view(),
+             AddMass{.renewed = nodes,
+                     .child_first = child_first_.view(),
                      .child = child_.view(),
                      .inverse_mass = l == 0 ? system.inverse_mass : View<const Real>{},
                      .row_first = matrix_.row_first.view(),

@@ -21,7 +21,8 @@ class Hierarchy {
   void set_up(const std::vector<Index>& row_first, const std::vector<Index>& column);
 
   /// Sums up the matrices of the levels without contacts: (A − M) / kOverestimate + M at each.
-  void fill_matrix(const SystemView& system);
+  /// `renewed`: 1 where a row differs from that of the call before, else 0; empty: all may (rows).
+  void fill_matrix(const SystemView& system, View<const std::uint8_t> renewed = {});
   /// Adds the couplings, in place of those of the call before. On the finest level they act as they
   /// are; on the others they are lumped on the diagonal blocks.
   void fill_contacts(const SystemView& system);
@@ -43,13 +44,14 @@ class Hierarchy {
   Array<Index> vertex_row_;                            ///< row of each block of the system's matrix
   Array<Index> node_row_;                              ///< row of each block of matrix_
   BlockMatrix matrix_;
-  Array<Index> source_first_;  ///< first source of each block of matrix_, and the end
-  Array<BlockSource> source_;  ///< the finer blocks that add up to each block of matrix_
-  Array<Real> mass_;           ///< of the free vertices (nodes), fill_matrix
-  Array<Mat3r> diagonal_;      ///< blocks without contacts (nodes), fill_matrix
-  CoarseCouplings coupled_;    ///< of the finest level, fill_contacts
-  Array<Mat3r> lumped_;        ///< couplings on each node (nodes), fill_contacts
-  Array<Mat3r> smoother_;      ///< see Multilevel (nodes), fill_contacts
+  Array<Index> source_first_;    ///< first source of each block of matrix_, and the end
+  Array<BlockSource> source_;    ///< the finer blocks that add up to each block of matrix_
+  Array<std::uint8_t> renewed_;  ///< 1: a row below the node was renewed (nodes), fill_matrix
+  Array<Real> mass_;             ///< of the free vertices (nodes), fill_matrix
+  Array<Mat3r> diagonal_;        ///< blocks without contacts (nodes), fill_matrix
+  CoarseCouplings coupled_;      ///< of the finest level, fill_contacts
+  Array<Mat3r> lumped_;          ///< couplings on each node (nodes), fill_contacts
+  Array<Mat3r> smoother_;        ///< see Multilevel (nodes), fill_contacts
   Array<Vec3r> b_, z_, t_;
 };
 

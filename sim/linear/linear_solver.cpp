@@ -239,7 +239,9 @@ LinearSolution LinearSolver::solve(const SystemView& system, View<const Mat3r> i
   const double bytes = bytes_per_iteration(system, n);
   LinearSolution coarse;
   if (options.preconditioner == Preconditioner::multilevel) {
-    if (!options.same_matrix) hierarchy_.fill_matrix(system);
+    if (options.change == MatrixChange::all) hierarchy_.fill_matrix(system);
+    if (options.change == MatrixChange::some_rows)
+      hierarchy_.fill_matrix(system, options.changed_rows);
     hierarchy_.fill_contacts(system);
     coarse = iterate(hierarchy_.view(system, inverse_diagonal), options.max_iterations);
     coarse.bytes = coarse.iterations * (bytes + hierarchy_.bytes());

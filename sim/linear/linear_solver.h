@@ -14,11 +14,19 @@ struct LinearSolution {
   double bytes = 0;     ///< that the iterations had to read and write at least
 };
 
+/// How the matrix of a system differs from that of the last solve, contacts left out.
+enum class MatrixChange {
+  none,
+  some_rows,  ///< in rows that are named
+  all,
+};
+
 struct SolveOptions {
   Preconditioner preconditioner;
   double tolerance;  ///< of LinearSolution::residual, whatever the preconditioner
   int max_iterations;
-  bool same_matrix = false;  ///< only contacts and right-hand side differ from the last solve's
+  MatrixChange change = MatrixChange::all;
+  View<const std::uint8_t> changed_rows{};  ///< 1: may differ, 0: the same; of some_rows (rows)
 };
 
 class LinearSolver {

@@ -17,8 +17,21 @@ struct AssembleRow {
   Shares shares;
   View<Mat3r> value;
   View<Vec3r> rhs;
+  View<std::uint8_t> renewed;  ///< becomes 1 where a row is written, else 0
+
+  /// Whether a term of the row is another one than in the iteration before.
+  ICLOTH_HD bool changes(Index i) const {
+    const Index diagonal = row_first[i];  // comes first
+    bool any = faces.renews(diagonal);
+    shares.each([&](const auto& share) { any = any || share.renews(diagonal); });
+    return any;
+  }
 
   ICLOTH_HD void operator()(Index i) const {
+    const bool writes = faces.renewed.size() == 0 || changes(i);
+    renewed[i] = writes ? 1 : 0;
+    if (!writes) return;
+
     Vec3r impulse = (dt * mass[i]) * gravity;
     for (Index k = row_first[i]; k < row_first[i + 1]; ++k) {
       const RowBlock at{i, k, column[k] == i};
@@ -82,17 +95,20 @@ void Assembly::assemble(const ForceContext& context) {
   const GravityParameters& g = context.parameters.gravity;
   auto shares = forces_.bundle([&](const auto& force) { return force.row_share(context); });
   rhs_.resize(mesh.cloth_vertices);
+  renewed_rows_.resize(mesh.cloth_vertices);
   for_each("implicit.assemble", mesh.cloth_vertices,
-           AssembleRow<decltype(shares)>{.row_first = matrix_.row_first.view(),
-                                         .column = matrix_.column.view(),
-                                         .mass = s.mass.view(),
-                                         .inverse_mass = s.inverse_mass.view(),
-                                         .gravity = convert<Real>(Vec3d{g.x, g.y, g.z}),
-                                         .dt = context.point.dt,
-                                         .faces = {face_sources_.view<3>(), face_terms_.view()},
-                                         .shares = shares,
-                                         .value = matrix_.value.view(),
-                                         .rhs = rhs_.view()});
+           AssembleRow<decltype(shares)>{
+               .row_first = matrix_.row_first.view(),
+               .column = matrix_.column.view(),
+               .mass = s.mass.view(),
+               .inverse_mass = s.inverse_mass.view(),
+               .gravity = convert<Real>(Vec3d{g.x, g.y, g.z}),
+               .dt = context.point.dt,
+               .faces = {face_sources_.view<3>(), face_terms_.view(), context.point.renewed},
+               .shares = shares,
+               .value = matrix_.value.view(),
+               .rhs = rhs_.view(),
+               .renewed = renewed_rows_.view()});
 }
 
 double Assembly::work(const ForceContext& context, View<const Vec3r> dv) const {

@@ -18,7 +18,8 @@ class Assembly {
   /// Lets the forces bring their own state to the shape x0.
   void begin_substep(SubstepContext& step);
 
-  /// Writes matrix() and rhs() for a point of linearisation.
+  /// Writes matrix() and rhs() for a point of linearisation. Where it keeps faces, rows whose terms
+  /// are all kept stay as they are.
   void assemble(const ForceContext& context);
 
   /// Work of the forces without a potential on the cloth from x0 to the candidate [J]. `dv`: the
@@ -28,6 +29,8 @@ class Assembly {
   const Forces& forces() const { return forces_; }
   const BlockMatrix& matrix() const { return matrix_; }
   View<const Vec3r> rhs() const { return rhs_.view(); }  ///< 0 of held vertices (cloth_vertices)
+  /// 1 where the last assembly has written the row, else 0 (cloth_vertices).
+  View<const std::uint8_t> renewed_rows() const { return renewed_rows_.view(); }
 
  private:
   void assemble_faces(const ForceContext& context);
@@ -38,6 +41,7 @@ class Assembly {
   ElementSources face_sources_;
   Array<FaceTerm> face_terms_;  ///< (cloth_faces), assemble_faces
   Array<Vec3r> rhs_;            ///< [N·s] (cloth_vertices), assemble
+  Array<std::uint8_t> renewed_rows_;
 };
 
 }  // namespace icloth::ICLOTH_BUILD

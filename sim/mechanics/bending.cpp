@@ -67,6 +67,8 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
   const Topology& mesh = c.mesh;
   motions_.resize(mesh.hinge_count);
   plates_.resize(mesh.cloth_faces);
+  renewed_plates_.resize(mesh.cloth_faces);
+  renewed_hinges_.resize(mesh.hinge_count);
 
   // Hinges find their angles, faces turn these into torques, and hinges add up the torques of their
   // two faces.
@@ -90,9 +92,11 @@ void Bending::prepare_plates(const ForceContext& c, const HingeBending& single) 
                      .hinge_term = terms_.view(),
                      .term = plates_.view(),
                      .extra_damping = single.extra_damping,
-                     .friction = {c.state.yarns.view()}});
+                     .friction = {c.state.yarns.view()},
+                     .renewed = renewed_plates_.view()});
   for_each("implicit.bending", mesh.hinge_count,
-           GatherPlates{mesh.hinge_slots.view(), plates_.view(), single});
+           GatherPlates{mesh.hinge_slots.view(), plates_.view(), single, renewed_plates_.view(),
+                        renewed_hinges_.view()});
 }
 
 void Bending::add_energy(const EnergyContext& c, ForceEnergy& energy) const {

@@ -108,6 +108,7 @@ struct PlatePass {
   View<PlateTerm> term;
   Real extra_damping;  ///< on top of the fabric's [s]
   BendingFriction friction;
+  View<std::uint8_t> renewed{};  ///< becomes 1 where the term is written, else 0 (faces)
 
   /// Whether the face and all of its hinges stay as they were linearised first.
   ICLOTH_HD bool keeps(Index i) const {
@@ -117,7 +118,9 @@ struct PlatePass {
   }
 
   ICLOTH_HD void operator()(Index i) const {
-    if (keeps(i)) return;
+    const bool same = keeps(i);
+    if (renewed.size() > 0) renewed[i] = same ? 0 : 1;
+    if (same) return;
     const PlateRest& p = plate[i];
     const Fabric& cloth = fabric[face_fabric[i]];
 
@@ -176,9 +179,21 @@ struct GatherPlates {
   View<const HingeSlots> slots;
   View<const PlateTerm> plate_term;
   HingeBending single;  ///< for edges of more than two faces, which no plate knows
+  View<const std::uint8_t> plate_renewed{};  ///< see PlatePass; empty: all
+  View<std::uint8_t> renewed{};              ///< the same of the hinges
+
+  /// A hinge follows its plates: they are renewed with the faces that its gradient depends on.
+  ICLOTH_HD bool follows(Index i) const {
+    return plate_renewed.size() == 0 || plate_renewed[slots[i].slot[0] / 3] != 0 ||
+           plate_renewed[slots[i].slot[1] / 3] != 0;
+  }
 
   ICLOTH_HD void operator()(Index i) const {
-    if (slots[i].slot[0] < 0) return single(i);
+    const bool is_single = slots[i].slot[0] < 0;
+    const bool writes = is_single || follows(i);
+    if (renewed.size() > 0) renewed[i] = writes ? 1 : 0;
+    if (!writes) return;
+    if (is_single) return single(i);
     HingeTerm& t = single.term[i];
     t.stiffness = t.impulse = 0;
     for (const Index slot : slots[i].slot) {

@@ -106,7 +106,7 @@ struct FinishRow {
   View<const Vec3r> rhs, residual;  ///< b and b − A Δv without contacts
   View<Vec3r> g, d;  ///< b − A Δv with contacts; where its correction starts, zero
   View<Mat3r> inverse_diagonal;
-  bool same_matrix;  ///< as in the pass before: contacts have kept their places since
+  bool later;  ///< not the first pass of this matrix: contacts have kept their places since
 
   ICLOTH_HD RowSums operator()(Index i) const {
     d[i] = Vec3r{};
@@ -119,7 +119,7 @@ struct FinishRow {
     }
 
     // A row without contacts stays as the first pass left it.
-    if (same_matrix && !couplings.hold(i)) {
+    if (later && !couplings.hold(i)) {
       g[i] = residual[i];
       return {dot_double(rhs[i], rhs[i]), dot_double(g[i], g[i]), convert<double>(g[i])};
     }
@@ -165,6 +165,13 @@ void ContactPasses::solve(SubstepContext& step, const ContactSystem& system,
   const VertexMotion motion{
       .free = system.free_motion, .inverse_mass = step.state.inverse_mass.view(), .dt = system.h};
   start(step, system, motion, dv, solved);
+
+  // A system that the solver did not see leaves changes behind, in rows that are not known here.
+  const bool seen = change_ == MatrixChange::none;
+  if (seen || system.change == MatrixChange::all)
+    change_ = system.change;
+  else if (system.change == MatrixChange::some_rows)
+    change_ = MatrixChange::all;
 
   // A system without contacts is linear, and solved at once.
   const ImplicitParameters& p = step.parameters.implicit;
@@ -229,8 +236,7 @@ void ContactPasses::start(SubstepContext& step, const ContactSystem& system,
 /// Solves for a correction of Δv with the couplings as they are, and goes along it.
 ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const ContactSystem& system,
                                                  const ContactLine& line, View<Vec3r> dv,
-                                                 double cg_tolerance, double loose,
-                                                 bool same_matrix) {
+                                                 double cg_tolerance, double loose, bool later) {
   const State& s = step.state;
   const ImplicitParameters& p = step.parameters.implicit;
   const Index vertices = step.mesh.cloth_vertices;
@@ -251,7 +257,7 @@ ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const Con
                                         .g = g_.view(),
                                         .d = d_.view(),
                                         .inverse_diagonal = inverse_diagonal_.view(),
-                                        .same_matrix = same_matrix},
+                                        .later = later},
                               Sum{});
   if (sums.gg == 0) {
     residual_force_ = {};
@@ -266,7 +272,9 @@ ContactPasses::PassResult ContactPasses::correct(SubstepContext& step, const Con
                     {.preconditioner = p.preconditioner,
                      .tolerance = tolerance,
                      .max_iterations = p.cg_max_iterations,
-                     .same_matrix = same_matrix});
+                     .change = change_,
+                     .changed_rows = system.changed_rows});
+  change_ = MatrixChange::none;
   const double share = line_search_.go(
       view, line, system.seams,
       {.d = d_.view(), .product = solver_.product(), .coupling = solver_.coupling_products()}, dv,

@@ -15,9 +15,11 @@ struct ContactSystem {
   const BlockMatrix& matrix;  ///< without contacts
   View<const Vec3r> rhs;      ///< without contacts [N·s] (cloth_vertices)
   const Array<Contact>& contacts;
-  View<const Coupling> seams;     ///< that act in every pass
-  View<const Vec3r> free_motion;  ///< x1 − x0 with Δv = 0 [m] (vertices)
-  Real h;                         ///< from a change of velocity to one of position [s]
+  View<const Coupling> seams;               ///< that act in every pass
+  View<const Vec3r> free_motion;            ///< x1 − x0 with Δv = 0 [m] (vertices)
+  Real h;                                   ///< from a change of velocity to one of position [s]
+  MatrixChange change = MatrixChange::all;  ///< of the matrix since the last system
+  View<const std::uint8_t> changed_rows{};  ///< see SolveOptions (cloth_vertices)
 };
 
 /// How well a system is to be solved.
@@ -55,7 +57,7 @@ class ContactPasses {
   void start(SubstepContext& step, const ContactSystem& system, const VertexMotion& motion,
              View<const Vec3r> dv, bool solved);
   PassResult correct(SubstepContext& step, const ContactSystem& system, const ContactLine& line,
-                     View<Vec3r> dv, double cg_tolerance, double loose, bool same_matrix);
+                     View<Vec3r> dv, double cg_tolerance, double loose, bool later);
 
   Array<ContactTerm> terms_;       ///< one for each contact
   Array<ContactTravel> travels_;   ///< (contacts)
@@ -66,6 +68,7 @@ class ContactPasses {
   Array<Vec3r> d_;                 ///< correction of Δv [m/s] (cloth_vertices + kPadding)
   Array<Mat3r> inverse_diagonal_;  ///< block-Jacobi (cloth_vertices)
   LinearSolver solver_;
+  MatrixChange change_ = MatrixChange::all;  ///< of the matrix since the solver last saw it
   LineSearch line_search_;
   PassResult result_;  ///< of the last pass
   Vec3d residual_force_;

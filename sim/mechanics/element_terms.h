@@ -47,6 +47,16 @@ struct SourceView {
   ICLOTH_HD void of_block(Index block, const F& f) const {
     for (Index e = first[block]; e < first[block + 1]; ++e) f(ElementBlock<kCorners>{number[e]});
   }
+
+  /// Whether an element that adds to a stored block is flagged, or any at all where no element has
+  /// a flag.
+  ICLOTH_HD bool flagged(Index block, View<const std::uint8_t> flag) const {
+    bool found = false;
+    of_block(block, [&](ElementBlock<kCorners> source) {
+      found = found || flag.size() == 0 || flag[source.element()] != 0;
+    });
+    return found;
+  }
 };
 
 /// Which blocks of one kind of element add up to each stored block. Written by PatternBuilder.
@@ -70,6 +80,10 @@ struct RowBlock {
 struct FaceRows {
   SourceView<3> sources;
   View<const FaceTerm> term;
+  View<const std::uint8_t> renewed;  ///< terms that the last pass wrote; empty: all (faces)
+
+  /// Whether the row of a diagonal block has a term that the last pass wrote.
+  ICLOTH_HD bool renews(Index diagonal) const { return sources.flagged(diagonal, renewed); }
 
   ICLOTH_HD void add(const RowBlock& at, Mat3r& sum, Vec3r& impulse) const {
     sources.of_block(at.block, [&](ElementBlock<3> source) {
@@ -85,6 +99,10 @@ struct FaceRows {
 struct HingeRows {
   SourceView<4> sources;
   View<const HingeTerm> term;
+  View<const std::uint8_t> renewed;  ///< terms that the last passes wrote; empty: all (hinges)
+
+  /// Whether the row of a diagonal block has a term that the last passes wrote.
+  ICLOTH_HD bool renews(Index diagonal) const { return sources.flagged(diagonal, renewed); }
 
   ICLOTH_HD void add(const RowBlock& at, Mat3r& sum, Vec3r& impulse) const {
     sources.of_block(at.block, [&](ElementBlock<4> source) {

@@ -44,6 +44,7 @@ struct NoFaceShare {
 
 /// Share of a force that has no elements of its own.
 struct NoRowShare {
+  ICLOTH_HD bool renews(Index) const { return false; }
   ICLOTH_HD void add(const RowBlock&, Mat3r&, Vec3r&) const {}
 };
 
@@ -77,7 +78,9 @@ struct Force {
   void prepare(const ForceContext&) {}
   /// Assembly: what the force adds to each face, in the pass over all faces.
   NoFaceShare face_share(const ForceContext&) const { return {}; }
-  /// Assembly, last: what the force adds to each stored block, in the pass over all rows.
+  /// Assembly, last: what the force adds to each stored block, in the pass over the rows. In later
+  /// iterations a row is left as it is unless the share of a force `renews` it, given its diagonal
+  /// block.
   NoRowShare row_share(const ForceContext&) const { return {}; }
 
   /// Energy of a shape, where the force has a potential.

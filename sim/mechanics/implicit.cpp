@@ -199,6 +199,7 @@ void Implicit::integrate_again(SubstepContext& step, const Proximity& proximity)
 
 void Implicit::linearize(SubstepContext& step) {
   assembly_.assemble(context(step));
+  change_ = point_.renewed.size() > 0 ? MatrixChange::some_rows : MatrixChange::all;
   ++step.report.newton_iterations;
   ++iteration_;
 }
@@ -241,8 +242,11 @@ void Implicit::solve(SubstepContext& step, const Proximity& proximity, const Con
                    .contacts = proximity.contacts(),
                    .seams = seams_.couplings(),
                    .free_motion = free_motion_.view(),
-                   .h = rule_.h},
+                   .h = rule_.h,
+                   .change = change_,
+                   .changed_rows = assembly_.renewed_rows()},
                   goal, dv_.view(), solved);
+  change_ = MatrixChange::none;
   move(step);
   linearization_error_ = find_linearization_error(step);
 }

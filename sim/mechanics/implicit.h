@@ -63,6 +63,7 @@ class Implicit {
   }
 
   Assembly assembly_;
+  MatrixChange change_ = MatrixChange::all;  ///< of its matrix since the last solve
   ContactPasses contacts_;
   SeamSprings seams_;
   Array<Vec3r> dv_;           ///< Δv [m/s] (cloth_vertices + kPadding)

@@ -101,18 +101,23 @@ struct ApplyOnce {
   }
 };
 
-/// M⁻¹ v.
-std::vector<Vec3r> preconditioned(Sheets& sheets, const std::vector<Vec3r>& v) {
-  Hierarchy hierarchy;
-  hierarchy.set_up(sheets.row_first, sheets.column);
-  hierarchy.fill_matrix(sheets.system());
-  hierarchy.fill_contacts(sheets.system());
+/// M⁻¹ v with the levels as they are filled.
+std::vector<Vec3r> applied(Hierarchy& hierarchy, Sheets& sheets, const std::vector<Vec3r>& v) {
   Array<Vec3r> from, r(sheets.count), z(sheets.count);
   from.upload(v);
   with_device_team("test", sheets.count,
                    ApplyOnce{hierarchy.view(sheets.system(), sheets.inverse_diagonal.view()),
                              from.view(), r.view(), z.view()});
   return z.download();
+}
+
+/// M⁻¹ v.
+std::vector<Vec3r> preconditioned(Sheets& sheets, const std::vector<Vec3r>& v) {
+  Hierarchy hierarchy;
+  hierarchy.set_up(sheets.row_first, sheets.column);
+  hierarchy.fill_matrix(sheets.system());
+  hierarchy.fill_contacts(sheets.system());
+  return applied(hierarchy, sheets, v);
 }
 
 std::vector<Vec3r> random_vector(Sheets& sheets) {
@@ -139,6 +144,38 @@ TEST(Multilevel, IsSymmetricAndPositiveDefinite) {
       EXPECT_GT(vv, 0);
       EXPECT_NEAR(inner(u, mv), inner(v, mu), 1e-5 * std::sqrt(uu * vv)) << stiffness;
     }
+  }
+}
+
+TEST(Multilevel, FillingSomeRowsAnewGivesTheLevelsOfAllRows) {
+  Sheets sheets(40, 3, 100, 50);
+  const auto v = random_vector(sheets);
+  Hierarchy hierarchy;
+  hierarchy.set_up(sheets.row_first, sheets.column);
+  hierarchy.fill_matrix(sheets.system());
+  hierarchy.fill_contacts(sheets.system());
+  const auto before = applied(hierarchy, sheets, v);
+
+  // A few rows become stiffer, each with the block to the next vertex.
+  std::vector<Mat3r> value = sheets.matrix.value.download();
+  std::vector<std::uint8_t> renewed(at(sheets.count), 0);
+  for (const Index i : {100, 101, 777, 2500}) {
+    renewed[at(i)] = 1;
+    const Mat3r more = Mat3r::identity(static_cast<Real>(i));
+    value[at(sheets.row_first[at(i)])] += more;
+    value[at(sheets.row_first[at(i)] + 1)] += Real(-0.1) * more;
+  }
+  sheets.matrix.value.upload_range(0, value);
+  Array<std::uint8_t> flags;
+  flags.upload(renewed);
+
+  // Twice, as contacts that were added before must not be counted again.
+  for (int k = 0; k < 2; ++k) {
+    hierarchy.fill_matrix(sheets.system(), flags.view());
+    hierarchy.fill_contacts(sheets.system());
+    const auto some = applied(hierarchy, sheets, v), all = preconditioned(sheets, v);
+    EXPECT_TRUE(std::equal(some.begin(), some.end(), all.begin(), all.end()));
+    EXPECT_FALSE(std::equal(some.begin(), some.end(), before.begin(), before.end()));
   }
 }
 
