@@ -90,7 +90,7 @@ constexpr Real kNegligibleError = Real(0.25);
 
 /// Tension that the linear solve leaves out: that of the strain which is of second order in the
 /// motion since the point of linearisation, ½ ΔFᵀΔF, and that of strain beyond the limit, as if the
-/// fabric had not hardened. Where a bound of it is allowed, the bound stands for it.
+/// fabric had not hardened. Where a bound of it is negligible, the bound stands for it.
 struct LinearizationError {
   View<const Int3> face;
   View<const Topology::Inverse> inverse;
@@ -98,7 +98,7 @@ struct LinearizationError {
   View<const Fabric> fabric;
   Linearization point;
   View<const Vec3r> dv;
-  Real allowed;                 ///< error up to which a bound is as good
+  Real allowed;                 ///< error up to which no other linearisation is needed
   View<std::uint8_t> to_renew;  ///< becomes 1 where a face needs it; empty: not written
 
   ICLOTH_HD Real operator()(Index i) const {
@@ -118,10 +118,11 @@ struct LinearizationError {
     const Real most =
         Real(0.5) * cloth.most_stiffness * std::fmax(norm2(change.fu), norm2(change.fv));
     const bool hardens = may_reach_limit(cloth, at, i) || may_reach_limit(cloth, end, i);
-    const Real error = most > allowed || hardens ? exactly(i, cloth, at, end, change) : most;
+    const Real negligible = kNegligibleError * allowed;
+    const Real error = most > negligible || hardens ? exactly(i, cloth, at, end, change) : most;
 
     // Hardened fabric is so stiff that it always counts.
-    if (to_renew.size() > 0 && (hardens || error > kNegligibleError * allowed)) to_renew[i] = 1;
+    if (to_renew.size() > 0 && (hardens || error > negligible)) to_renew[i] = 1;
     return error;
   }
 
@@ -291,10 +292,10 @@ void Implicit::move(SubstepContext& step) {
 }
 
 /// Notes that no face needs another linearisation yet. The pressure of a gas, which is not
-/// linearised at all, and the friction of yarns follow the shape everywhere.
+/// linearised at all, follows the shape everywhere.
 void Implicit::renew_no_face(const SubstepContext& step) {
-  const bool anywhere = step.parameters.material.pressure != 0 || step.state.yarns.size() > 0 ||
-                        step.parameters.implicit.newton_iterations <= 1;
+  const bool anywhere =
+      step.parameters.material.pressure != 0 || step.parameters.implicit.newton_iterations <= 1;
   to_renew_.resize(anywhere ? 0 : step.mesh.cloth_faces);
   to_renew_.fill(0);
 }
