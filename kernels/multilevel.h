@@ -70,6 +70,8 @@ struct Multilevel {
   static constexpr int kMaxLevels = 8;
   static constexpr Real kDamping = Real(0.5);
   static constexpr int kLastSweeps = 3;  ///< on the coarsest level; odd, so that they end in t
+  /// Levels of so few nodes are left to one block, which waits for its own threads alone.
+  static constexpr Index kSmallLevel = 1024;
 
   struct Level {
     Index first, count;
@@ -95,8 +97,15 @@ struct Multilevel {
     // The V-cycle: residuals are restricted to coarser and coarser levels, then corrections come
     // back.
     team.for_each(out.size(), [&](Index i) { residual(i); });
-    for (int l = 0; l < levels; ++l) go_down(team, l, l == 0 ? r : t);
-    for (int l = levels - 2; l >= 0; --l) go_up(team, level[l]);
+    const int large = large_levels();
+    for (int l = 0; l < large; ++l) go_down(team, l, l == 0 ? r : t);
+    if (large < levels) {
+      team.in_one_block([&](const auto& block) {
+        for (int l = large; l < levels; ++l) go_down(block, l, l == 0 ? r : t);
+        for (int l = levels - 2; l >= large; --l) go_up(block, level[l]);
+      });
+    }
+    for (int l = (large < levels ? large : levels - 1) - 1; l >= 0; --l) go_up(team, level[l]);
 
     // The finest level adds its block diagonal to the correction of its group. Prescribed vertices
     // take no correction.
@@ -112,6 +121,13 @@ struct Multilevel {
   }
 
  private:
+  /// The levels above the first small one. Each has fewer nodes than the one before.
+  ICLOTH_HD int large_levels() const {
+    int count = 0;
+    while (count < levels && level[count].count > kSmallLevel) ++count;
+    return count;
+  }
+
   /// Row i of the level's matrix times v.
   ICLOTH_HD Vec3r multiplied(Index i, View<const Vec3r> v) const {
     const Real* numbers = &v.data()->x;
@@ -126,7 +142,7 @@ struct Multilevel {
   /// Leaves in t the residual that the next level has to correct, or on the coarsest level the
   /// correction itself.
   template <class Team>
-  ICLOTH_HD void go_down(Team& team, int l, View<const Vec3r> finer) const {
+  ICLOTH_HD void go_down(const Team& team, int l, View<const Vec3r> finer) const {
     const Index first = level[l].first, count = level[l].count;
 
     // The right-hand side of a node is the sum over its children; the first sweep starts from zero.
@@ -159,7 +175,7 @@ struct Multilevel {
 
   /// Adds the correction of the coarser level and sweeps once; the result is in t.
   template <class Team>
-  ICLOTH_HD void go_up(Team& team, const Level& at) const {
+  ICLOTH_HD void go_up(const Team& team, const Level& at) const {
     const Index first = at.first;
     team.for_each(at.count, [&](Index k) { z[first + k] += t[parent[first + k]]; });
     team.for_each(at.count, [&](Index k) { t[first + k] = swept(first + k, z); });

@@ -17,6 +17,10 @@ class DeviceTeam {
   void single(const Body& body) const {
     body();
   }
+  template <class Body>
+  void in_one_block(const Body& body) const {
+    body(*this);
+  }
   template <class T, class Body, class Op>
   T reduce(Index n, T identity, const Body& body, const Op& op) const {
     return detail::reduce_indices(n, identity, body, op);

@@ -8,6 +8,16 @@
 
 namespace icloth::ICLOTH_BUILD {
 
+/// The threads of one block of a DeviceTeam.
+class BlockOfDevice {
+ public:
+  template <class Body>
+  __device__ void for_each(Index n, const Body& body) const {
+    for (std::int64_t i = threadIdx.x; i < n; i += detail::kThreads) body(static_cast<Index>(i));
+    __syncthreads();
+  }
+};
+
 class DeviceTeam {
  public:
   /// `partial`: two buffers of `half` bytes for what the blocks find, used in turn.
@@ -29,6 +39,11 @@ class DeviceTeam {
   template <class Body>
   __device__ void single(const Body& body) const {
     if (blockIdx.x == 0 && threadIdx.x == 0) body();
+    barrier();
+  }
+  template <class Body>
+  __device__ void in_one_block(const Body& body) const {
+    if (blockIdx.x == 0) body(BlockOfDevice{});
     barrier();
   }
 

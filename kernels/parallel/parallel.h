@@ -77,7 +77,9 @@ void for_each_team(const char* name, Index teams, const F& f);
 /// Calls f(team) once with a DeviceTeam: every thread of the device works on one problem, in one
 /// kernel on CUDA. `n`: the largest number of elements that f will give to the team's members.
 /// They are those of Team (kernels/parallel/team.h), and each is a barrier for the whole device;
-/// sums have an order that depends on their length alone, but differs between CPU and CUDA.
+/// sums have an order that depends on their length alone, but differs between CPU and CUDA. One
+/// more member, in_one_block(body), calls body(block) where `block` has for_each alone: on CUDA one
+/// block goes through a few small loops, in which it waits for its own threads only.
 template <class F>
 void with_device_team(const char* name, Index n, const F& f);
 

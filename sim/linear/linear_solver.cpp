@@ -35,9 +35,9 @@ struct ConjugateGradients {
   int max_iterations;
   View<LinearSolution> solution;  ///< (1)
 
-  /// Sets q = A v and returns v·Av.
-  template <class Team>
-  ICLOTH_HD double multiply(Team& team, View<const Vec3r> v) const {
+  /// Sets q = A v and adds up of_row(i), a T, over its rows.
+  template <class T, class Team, class OfRow>
+  ICLOTH_HD T multiply(Team& team, View<const Vec3r> v, const OfRow& of_row) const {
     // Contacts are applied in two halves, first H Σ w v of each coupling, so that a vertex can
     // gather them in a fixed order.
     if (contact.size() > 0) {
@@ -49,16 +49,15 @@ struct ConjugateGradients {
 
     // Each row gathers its blocks and its contacts; prescribed vertices have no row.
     return team.reduce(
-        b.size(), 0.0,
+        b.size(), T{},
         [&](Index i) {
-          if (!(system.inverse_mass[i] > 0)) {
-            q[i] = Vec3r{};
-            return 0.0;
+          Vec3r sum{};
+          if (system.inverse_mass[i] > 0) {
+            sum = multiply_row(system, i, &v.data()->x);
+            system.couplings.of_vertex(i, [&](Index c, Real w) { sum += w * contact[c]; });
           }
-          Vec3r sum = multiply_row(system, i, &v.data()->x);
-          system.couplings.of_vertex(i, [&](Index c, Real w) { sum += w * contact[c]; });
           q[i] = sum;
-          return dot_double(v[i], sum);
+          return of_row(i);
         },
         Sum{});
   }
@@ -71,14 +70,10 @@ struct ConjugateGradients {
   /// The true residual of x, summed up.
   template <class Team>
   ICLOTH_HD ResidualSums true_residuals(Team& team) const {
-    multiply(team, x);
-    return team.reduce(
-        b.size(), ResidualSums{},
-        [&](Index i) {
-          const Vec3r residual = true_residual(i);
-          return ResidualSums{dot_double(residual, residual), convert<double>(residual)};
-        },
-        Sum{});
+    return multiply<ResidualSums>(team, x, [&](Index i) {
+      const Vec3r residual = true_residual(i);
+      return ResidualSums{dot_double(residual, residual), convert<double>(residual)};
+    });
   }
 
   /// Goes by α p and carries the residual along; q is A p.
@@ -97,9 +92,9 @@ struct ConjugateGradients {
   template <class Team>
   ICLOTH_HD Dots step_anew(Team& team, Real alpha) const {
     team.for_each(b.size(), [&](Index i) { x[i] += alpha * p[i]; });
-    multiply(team, x);
+    true_residuals(team);
     return precondition(
-        team, [&](Index i) { return true_residual(i); }, r, z);
+        team, [&](Index i) { return r[i]; }, r, z);
   }
 
   template <class Team>
@@ -133,13 +128,15 @@ struct ConjugateGradients {
 
     // The first residual is b when the start is zero, which saves a product.
     LinearSolution result;
-    if (lengths.xx == 0)
-      team.for_each(n, [&](Index i) { q[i] = Vec3r{}; });
-    else
-      multiply(team, x);
-
+    const bool starts_at_zero = lengths.xx == 0;
+    if (!starts_at_zero) true_residuals(team);
     Dots dots = precondition(
-        team, [&](Index i) { return true_residual(i); }, r, z);
+        team,
+        [&](Index i) {
+          if (starts_at_zero) r[i] = system.inverse_mass[i] > 0 ? b[i] : Vec3r{};
+          return r[i];
+        },
+        r, z);
 
     // The first direction is the preconditioned residual. The start is the best x so far.
     team.for_each(n, [&](Index i) {
@@ -152,7 +149,8 @@ struct ConjugateGradients {
     // The step along p minimises the energy; it fails when rounding has eaten the curvature, or at
     // NaN.
     while (result.iterations < max_iterations && dots.rr > tolerance * tolerance * bb) {
-      const double pq = multiply(team, p.sub(0, n));
+      const double pq =
+          multiply<double>(team, p.sub(0, n), [&](Index i) { return dot_double(p[i], q[i]); });
       if (!(pq > 0) || !(dots.rz > 0)) break;
       const double rz = dots.rz;
       const Real alpha = static_cast<Real>(rz / pq);

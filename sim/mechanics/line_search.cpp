@@ -30,7 +30,8 @@ struct Search {
   template <class Team>
   ICLOTH_HD void operator()(Team& team) const {
     const Index vertices = product.size(), contacts = line.contacts.size();
-    const Two quadratic = sums_without_contacts(team) + sums_of_seams(team);
+    Two quadratic = sums_without_contacts(team);
+    if (seams.size() > 0) quadratic = quadratic + sums_of_seams(team);
     const double alpha = contacts == 0 ? 1 : minimum(team, quadratic);
     const Real step = static_cast<Real>(alpha);
     team.for_each(vertices, [&](Index i) {
