@@ -292,10 +292,10 @@ void Implicit::move(SubstepContext& step) {
 }
 
 /// Notes that no face needs another linearisation yet. The pressure of a gas, which is not
-/// linearised at all, follows the shape everywhere.
+/// linearised at all, and the friction of yarns follow the shape everywhere.
 void Implicit::renew_no_face(const SubstepContext& step) {
-  const bool anywhere =
-      step.parameters.material.pressure != 0 || step.parameters.implicit.newton_iterations <= 1;
+  const bool anywhere = step.parameters.material.pressure != 0 || step.state.yarns.size() > 0 ||
+                        step.parameters.implicit.newton_iterations <= 1;
   to_renew_.resize(anywhere ? 0 : step.mesh.cloth_faces);
   to_renew_.fill(0);
 }
