@@ -95,7 +95,7 @@ struct Multilevel {
   ICLOTH_HD Dots operator()(Team& team, const Residual& residual, View<const Vec3r> r,
                             View<Vec3r> out) const {
     // The V-cycle: residuals are restricted to coarser and coarser levels, then corrections come
-    // back.
+    // back. The small levels are the last ones, and one block goes down and up through them.
     team.for_each(out.size(), [&](Index i) { residual(i); });
     const int large = large_levels();
     for (int l = 0; l < large; ++l) go_down(team, l, l == 0 ? r : t);
@@ -105,7 +105,8 @@ struct Multilevel {
         for (int l = levels - 2; l >= large; --l) go_up(block, level[l]);
       });
     }
-    for (int l = (large < levels ? large : levels - 1) - 1; l >= 0; --l) go_up(team, level[l]);
+    for (int l = levels - 2; l >= 0; --l)
+      if (l < large) go_up(team, level[l]);
 
     // The finest level adds its block diagonal to the correction of its group. Prescribed vertices
     // take no correction.
