@@ -1,5 +1,7 @@
 #include "sim/collision/tree.h"
 
+#include <algorithm>
+
 namespace icloth::ICLOTH_BUILD {
 namespace {
 
@@ -61,16 +63,41 @@ struct FitLeaves {
 /// Fits a level to the boxes of the level below it.
 struct FitLevel {
   View<TreeNode> node;
-  Index below, below_count, level;
+  TreeLevel below, level;
 
   ICLOTH_HD void operator()(Index n) const {
     for (int c = 0; c < kTreeWidth; ++c) {
       const Index child = n * kTreeWidth + c;
       MovingBox b;
-      if (child < below_count)
-        for (int k = 0; k < kTreeWidth; ++k) include(b, child_box(node[below + child], k));
-      set_child(node[level + n], c, b);
+      if (child < below.count)
+        for (int k = 0; k < kTreeWidth; ++k) include(b, child_box(node[below.first + child], k));
+      set_child(node[level.first + n], c, b);
     }
+  }
+};
+
+/// Levels up to this size are left to one block of a GPU, which need not wait for the others.
+constexpr Index kSmallLevel = 256;
+
+/// Fits the levels one after the other, in one kernel on a GPU.
+struct FitLevels {
+  FitLeaves leaves;
+  TreeLevel level[kTreeLevels];
+  int levels;
+
+  template <class Team>
+  ICLOTH_HD void operator()(Team& team) const {
+    team.for_each(level[0].count, leaves);
+    int l = 1;
+    for (; l < levels && level[l].count > kSmallLevel; ++l) fit(team, l);
+    team.in_one_block([&](const auto& block) {
+      for (int small = l; small < levels; ++small) fit(block, small);
+    });
+  }
+
+  template <class Team>
+  ICLOTH_HD void fit(const Team& team, int l) const {
+    team.for_each(level[l].count, FitLevel{leaves.node, level[l - 1], level[l]});
   }
 };
 
@@ -100,7 +127,7 @@ TreeView Tree::view() const {
   t.nodes = nodes_.view();
   t.items = leaves_.view();
   t.levels = levels_;
-  for (int l = 0; l < levels_; ++l) t.level_first[l] = level_first_[l];
+  for (int l = 0; l < levels_; ++l) t.level_first[l] = level_[l].first;
   return t;
 }
 
@@ -122,8 +149,7 @@ void Tree::make_levels(const MovingBoxes& boxes) {
   Index total = 0;
   for (Index count = leaves_.size(); levels_ == 0 || count > 1;) {
     count = (count + kTreeWidth - 1) / kTreeWidth;
-    level_first_[levels_] = total;
-    level_count_[levels_++] = count;
+    level_[levels_++] = {total, count};
     total += count;
   }
   nodes_.resize(total);
@@ -132,10 +158,9 @@ void Tree::make_levels(const MovingBoxes& boxes) {
 
 void Tree::refit(const MovingBoxes& boxes) {
   if (levels_ == 0) return;
-  for_each("broad_phase.leaves", level_count_[0], FitLeaves{boxes, leaves_.view(), nodes_.view()});
-  for (int l = 1; l < levels_; ++l)
-    for_each("broad_phase.refit", level_count_[l],
-             FitLevel{nodes_.view(), level_first_[l - 1], level_count_[l - 1], level_first_[l]});
+  FitLevels fit{.leaves = {boxes, leaves_.view(), nodes_.view()}, .level = {}, .levels = levels_};
+  std::copy_n(level_, levels_, fit.level);
+  with_device_team("broad_phase.refit", level_[0].count, fit);
 }
 
 }  // namespace icloth::ICLOTH_BUILD

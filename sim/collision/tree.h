@@ -25,6 +25,11 @@ class CurveOrder {
   Array<std::uint64_t> codes_;
 };
 
+/// The nodes of one level of a tree, which follow one another.
+struct TreeLevel {
+  Index first, count;
+};
+
 class Tree {
  public:
   /// Builds the tree over the elements first, first + 1 … boxes.size() − 1, sorted anew.
@@ -44,8 +49,7 @@ class Tree {
 
   CurveOrder leaves_;
   Array<TreeNode> nodes_;
-  Index level_first_[kTreeLevels] = {};
-  Index level_count_[kTreeLevels] = {};
+  TreeLevel level_[kTreeLevels] = {};
   int levels_ = 0;
 };
 
