@@ -76,6 +76,13 @@ struct MoveVertices {
   }
 };
 
+/// Where the cloth would come to without forces.
+struct FreeShape {
+  View<const Vec3r> x0, free;
+  View<Vec3r> shape;
+  ICLOTH_HD void operator()(Index i) const { shape[i] = x0[i] + free[i]; }
+};
+
 /// From the solution, where the next iteration linearises, to the end of the step with Δv = 0.
 struct PredictedMotion {
   View<const Vec3r> dv;
@@ -292,10 +299,10 @@ void Implicit::move(SubstepContext& step) {
 }
 
 /// Notes that no face needs another linearisation yet. The pressure of a gas, which is not
-/// linearised at all, and the friction of yarns follow the shape everywhere.
+/// linearised at all, follows the shape everywhere.
 void Implicit::renew_no_face(const SubstepContext& step) {
-  const bool anywhere = step.parameters.material.pressure != 0 || step.state.yarns.size() > 0 ||
-                        step.parameters.implicit.newton_iterations <= 1;
+  const bool anywhere =
+      step.parameters.material.pressure != 0 || step.parameters.implicit.newton_iterations <= 1;
   to_renew_.resize(anywhere ? 0 : step.mesh.cloth_faces);
   to_renew_.fill(0);
 }
@@ -304,16 +311,28 @@ double Implicit::find_linearization_error(const SubstepContext& step) {
   const Topology& mesh = step.mesh;
   const ImplicitParameters& p = step.parameters.implicit;
   const double allowed = std::min(p.newton_tolerance, p.max_linearization_error);
-  return static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
-                                    LinearizationError{.face = mesh.face.view(),
-                                                       .inverse = mesh.face_inverse.view(),
-                                                       .face_fabric = mesh.face_fabric.view(),
-                                                       .fabric = mesh.fabric.view(),
-                                                       .point = point_,
-                                                       .dv = dv_.view(),
-                                                       .allowed = static_cast<Real>(allowed),
-                                                       .to_renew = to_renew_.view()},
-                                    Max{}));
+  const double error =
+      static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
+                                 LinearizationError{.face = mesh.face.view(),
+                                                    .inverse = mesh.face_inverse.view(),
+                                                    .face_fabric = mesh.face_fabric.view(),
+                                                    .fabric = mesh.fabric.view(),
+                                                    .point = point_,
+                                                    .dv = dv_.view(),
+                                                    .allowed = static_cast<Real>(allowed),
+                                                    .to_renew = to_renew_.view()},
+                                 Max{}));
+
+  // Friction of yarns decides which faces are renewed, but not whether there is another iteration.
+  if (iteration_ > 0 && step.state.yarns.size() > 0 && to_renew_.size() > 0 &&
+      error > p.newton_tolerance) {
+    free_shape_.resize(mesh.cloth_vertices);
+    for_each("implicit.free_shape", mesh.cloth_vertices,
+             FreeShape{step.state.x0.view(), free_motion_.view(), free_shape_.view()});
+    mark_wrong_friction(context(step), free_shape_.view(),
+                        kNegligibleError * static_cast<Real>(allowed), to_renew_.view());
+  }
+  return error;
 }
 
 void Implicit::linearize_at_candidate(const SubstepContext& step) {

@@ -76,6 +76,7 @@ class Implicit {
   /// Shape and predicted motion of the linearisation, from the second iteration on [m]
   /// (cloth_vertices), linearize_at_candidate.
   Array<Vec3r> at_, predicted_;
+  Array<Vec3r> free_shape_;       ///< x0 + free_motion_, where yarns have friction [m]
   Array<std::uint8_t> renewed_;   ///< see Linearization::renewed, linearize_at_candidate
   Array<std::uint8_t> to_renew_;  ///< the same for the next iteration, find_linearization_error
   double linearization_error_ = 0;

@@ -52,6 +52,39 @@ struct YarnWork {
   }
 };
 
+/// The law of the friction is a secant that was looked up at one deformation of a face and acts on
+/// another one.
+struct MarkWrongFriction {
+  FaceDeformation predicted_end, at, end;
+  Linearization point;
+  View<const Real> area;
+  View<const Index> face_fabric;
+  View<const Fabric> fabric;
+  View<const YarnAnchor> anchor;
+  Real negligible;
+  View<std::uint8_t> to_renew;
+
+  ICLOTH_HD void operator()(Index i) const {
+    const Fabric& f = fabric[face_fabric[i]];
+    if (to_renew[i] != 0 || !(f.shear_friction > 0 || f.bending_friction > 0)) return;
+    const bool first = !point.moved() || point.keeps(i);
+    const YarnAnchor slack = anchor[i], used = first ? predicted_end(i) : at(i), now = end(i);
+
+    // Shear.
+    const Real used_shear = used.shear - slack.shear, shear = now.shear - slack.shear;
+    const Real missed_shear = std::fabs(
+        (shear_friction_stiffness(f, used_shear) - shear_friction_stiffness(f, shear)) * shear);
+
+    // Bending.
+    const Sym2 away = now.curvature - slack.curvature;
+    const Real missed_modulus = bending_friction_moduli(f, used.curvature - slack.curvature).d11 -
+                                bending_friction_moduli(f, away).d11;
+    const Real missed_moment = std::fabs(missed_modulus) * curvature_size(away);
+    if (missed_shear > negligible || missed_moment > negligible * std::sqrt(area[i]))
+      to_renew[i] = 1;
+  }
+};
+
 bool bend_as_plates(const Topology& mesh, const Parameters& p) {
   return mesh.bends && p.material.bending == BendingModel::plate;
 }
@@ -81,6 +114,23 @@ void YarnFriction::begin_substep(const Topology& mesh, const Parameters& paramet
   for_each("implicit.update_anchors", state.yarns.size(),
            UpdateAnchors{deformation_of(mesh, parameters, state.x0.view()), state.yarns.view(),
                          state.yarns_start.view()});
+}
+
+void mark_wrong_friction(const ForceContext& c, View<const Vec3r> predicted_end, Real negligible,
+                         View<std::uint8_t> to_renew) {
+  const Topology& mesh = c.mesh;
+  const State& state = c.state;
+  for_each("implicit.wrong_friction", state.yarns.size(),
+           MarkWrongFriction{.predicted_end = deformation_of(mesh, c.parameters, predicted_end),
+                             .at = deformation_of(mesh, c.parameters, c.point.at),
+                             .end = deformation_of(mesh, c.parameters, state.candidate.view()),
+                             .point = c.point,
+                             .area = mesh.face_area.view(),
+                             .face_fabric = mesh.face_fabric.view(),
+                             .fabric = mesh.fabric.view(),
+                             .anchor = state.yarns.view(),
+                             .negligible = negligible,
+                             .to_renew = to_renew});
 }
 
 double YarnFriction::work(const ForceContext& c, View<const Vec3r>) const {

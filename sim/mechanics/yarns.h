@@ -82,6 +82,13 @@ class YarnFriction : public Force {
   double work(const ForceContext& c, View<const Vec3r> dv) const;
 };
 
+/// Marks the faces whose linearised friction is further than `negligible` [N/m] from its law at the
+/// candidate: a shear force per width, or a moment per width over the size of the face.
+/// `predicted_end`: the shape of the prediction at which the friction of the first linearisation
+/// was looked up [m] (≥ cloth_vertices).
+void mark_wrong_friction(const ForceContext& c, View<const Vec3r> predicted_end, Real negligible,
+                         View<std::uint8_t> to_renew);
+
 /// Prepares the anchors at the start of a step as the fabrics and the model of bending need them.
 /// Anchors of another kind are reset to the shape x1, where no friction acts; without yarn friction
 /// there are none. Changes of the parameters between two steps leave no trace.
