@@ -237,6 +237,11 @@ struct FindEdgeEdge {
   }
 };
 
+/// Stiffness of a contact that an impact made, over that of one found at the start. Taut cloth on a
+/// limb presses with more than those carry, and the candidate lies within the limb. A late contact
+/// is as stiff as the fabric, so that little is left to the impact zones.
+constexpr Real kLateStiffness = 100;
+
 /// The contact of a pair that collides. Its gap is that of the planes at the time of impact, which
 /// the elements keep from then on.
 struct ContactOfImpact {
@@ -253,8 +258,8 @@ struct ContactOfImpact {
     c.s = hit.s;
     c.normal = hit.normal;
     c.gap = dot(hit.normal, apply(hit.s, maker.x));
-    c.area = maker.carrying_area(edge_edge ? maker.areas.of_edges(pair)
-                                           : maker.areas.of_vertex_face(pair));
+    c.area = kLateStiffness * maker.carrying_area(edge_edge ? maker.areas.of_edges(pair)
+                                                            : maker.areas.of_vertex_face(pair));
     c.friction = maker.coefficient(hit.s, maker.touches_obstacle(hit.s));
 
     // A pair that starts closer than h comes no closer, but is not driven apart either: the normal

@@ -52,7 +52,7 @@ struct ProximityParameters {
   double stiffness = 1e6;
   double friction_cloth = 0.6;
   double friction_obstacle = 0.3;
-  int late_rounds = 1;
+  int late_rounds = 2;
 };
 
 struct ImplicitParameters {

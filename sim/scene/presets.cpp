@@ -38,7 +38,7 @@ constexpr Preset kPresets[] = {
 // every round, and both are taken to respond by the linear impact zones of Harmon et al. 2008.
 // Without late contacts, shorter substeps are faster.
 constexpr Preset::Setting kOwn[] = {{"step.max_travel", "10"},
-                                    {"proximity.late_rounds", "1"},
+                                    {"proximity.late_rounds", "2"},
                                     {"broad_phase.method", "tree"},
                                     {"ccd.incremental", "on"},
                                     {"impact_zones.solver", "dual"}};
