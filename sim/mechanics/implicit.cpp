@@ -95,6 +95,16 @@ struct PredictedMotion {
 /// with those that have more.
 constexpr Real kNegligibleError = Real(0.25);
 
+/// What the linear solve leaves out of a face: tension [N/m], and the strain that it belongs to.
+struct FaceError {
+  Real tension, strain;
+};
+struct LargestErrors {
+  ICLOTH_HD FaceError operator()(FaceError a, FaceError b) const {
+    return {Max{}(a.tension, b.tension), Max{}(a.strain, b.strain)};
+  }
+};
+
 /// Tension that the linear solve leaves out: that of the strain which is of second order in the
 /// motion since the point of linearisation, ½ ΔFᵀΔF, and that of strain beyond the limit, as if the
 /// fabric had not hardened. Where a bound of it is negligible, the bound stands for it.
@@ -108,7 +118,7 @@ struct LinearizationError {
   Real allowed;                 ///< error up to which no other linearisation is needed
   View<std::uint8_t> to_renew;  ///< becomes 1 where a face needs it; empty: not written
 
-  ICLOTH_HD Real operator()(Index i) const {
+  ICLOTH_HD FaceError operator()(Index i) const {
     const View<const Vec3r> shape = point.shape_of(i);
     Vec3r at[3], motion[3], end[3];
     for (int a = 0; a < 3; ++a) {
@@ -122,14 +132,15 @@ struct LinearizationError {
     // Most faces turn and stretch so little that no fabric is stiff enough to make it count.
     const Fabric& cloth = fabric[face_fabric[i]];
     const FaceFrame change = face_frame(motion, inverse[i].m);
-    const Real most =
-        Real(0.5) * cloth.most_stiffness * std::fmax(norm2(change.fu), norm2(change.fv));
+    const Real strain = Real(0.5) * std::fmax(norm2(change.fu), norm2(change.fv));
+    const Real most = cloth.most_stiffness * strain;
     const bool hardens = may_reach_limit(cloth, at, i) || may_reach_limit(cloth, end, i);
     const Real negligible = kNegligibleError * allowed;
-    const Real error = most > negligible || hardens ? exactly(i, cloth, at, end, change) : most;
+    const FaceError error =
+        most > negligible || hardens ? exactly(i, cloth, at, end, change) : FaceError{most, strain};
 
     // Hardened fabric is so stiff that it always counts.
-    if (to_renew.size() > 0 && (hardens || error > negligible)) to_renew[i] = 1;
+    if (to_renew.size() > 0 && (hardens || error.tension > negligible)) to_renew[i] = 1;
     return error;
   }
 
@@ -138,8 +149,8 @@ struct LinearizationError {
            strain_bound(green_strain(face_frame(x, inverse[i].m))) > cloth.limit_strain;
   }
 
-  ICLOTH_HD Real exactly(Index i, const Fabric& cloth, const Vec3r at[3], const Vec3r end[3],
-                         const FaceFrame& change) const {
+  ICLOTH_HD FaceError exactly(Index i, const Fabric& cloth, const Vec3r at[3], const Vec3r end[3],
+                              const FaceFrame& change) const {
     Vec3r start[3];
     for (int a = 0; a < 3; ++a) start[a] = point.start[face[i].v[a]];
 
@@ -150,13 +161,17 @@ struct LinearizationError {
     // The limit is much stiffer than the fabric. What counts is the strain that it lets pass.
     const Real passed = missed_limit_strain(cloth, green_strain(face_frame(at, inverse[i].m)),
                                             green_strain(face_frame(end, inverse[i].m)));
-    return missed + passed * std::fmax(k.k11, k.k22);
+    const Real strain = Real(0.5) * std::fmax(norm2(change.fu), norm2(change.fv));
+    return {missed + passed * std::fmax(k.k11, k.k22), strain + passed};
   }
 };
 
 /// A linearisation whose start was this many times too wrong is expected to be followed by another
 /// one: the error falls to about a third from one to the next.
 constexpr double kDraftError = 2.5;
+
+/// A linearisation that leaves out more strain than this may be followed by twice as many as usual.
+constexpr double kGrossStrain = 0.05;
 
 /// The goal of a solution at which the system is going to be linearised again.
 ContactGoal draft_of(const ContactGoal& fair) {
@@ -194,7 +209,8 @@ void Implicit::integrate(SubstepContext& step, const Proximity& proximity) {
   seams_.assemble(step, free_motion, point_.v, rule_.h);
 
   // How much the motion without forces turns the faces says whether one linearisation will do.
-  linearization_error_ = p.newton_iterations > 1 ? find_linearization_error(step) : 0;
+  linearization_error_ = 0;
+  if (p.newton_iterations > 1) find_linearization_error(step);
   renew_no_face(step);
   linearize(step);
   find_candidate(step, proximity, false);
@@ -221,11 +237,11 @@ void Implicit::find_candidate(SubstepContext& step, const Proximity& proximity, 
     // A solution at which the system is going to be linearised again is a draft. The candidate
     // shows how much tension the linearisation left out.
     const bool draft =
-        iteration_ < p.newton_iterations && linearization_error_ > kDraftError * p.newton_tolerance;
+        iteration_ < most_iterations(p) && linearization_error_ > kDraftError * p.newton_tolerance;
     solve(step, proximity, draft ? draft_of(fair) : fair, solved);
     if (draft && !(linearization_error_ > p.newton_tolerance)) solve(step, proximity, fair, true);
     if (!(linearization_error_ > p.newton_tolerance)) break;
-    if (iteration_ >= p.newton_iterations) {
+    if (iteration_ >= most_iterations(p)) {
       step.report.reach(Limit::newton_iterations);
       break;
     }
@@ -239,6 +255,14 @@ void Implicit::find_candidate(SubstepContext& step, const Proximity& proximity, 
     outer_work_ =
         assembly_.work(context(step), dv_.view()) +
         seams_.work(free_motion_.view(), dv_.view(), step.state.inverse_mass.view(), rule_.h);
+}
+
+/// Iterations that the present error may take. A gross one may take twice the usual number:
+/// contacts that were added late find it used up, and single faces of soft fabrics would stay
+/// stretched.
+int Implicit::most_iterations(const ImplicitParameters& p) const {
+  const bool more = p.newton_iterations > 1 && missed_strain_ > kGrossStrain;
+  return more ? 2 * p.newton_iterations : p.newton_iterations;
 }
 
 /// Solves the present linear system and moves the vertices.
@@ -256,7 +280,7 @@ void Implicit::solve(SubstepContext& step, const Proximity& proximity, const Con
                   goal, dv_.view(), solved);
   change_ = MatrixChange::none;
   move(step);
-  linearization_error_ = find_linearization_error(step);
+  find_linearization_error(step);
 }
 
 /// Writes free_motion_ and, where the rule remembers the step before, free_velocity_.
@@ -307,12 +331,11 @@ void Implicit::renew_no_face(const SubstepContext& step) {
   to_renew_.fill(0);
 }
 
-double Implicit::find_linearization_error(const SubstepContext& step) {
+void Implicit::find_linearization_error(const SubstepContext& step) {
   const Topology& mesh = step.mesh;
   const ImplicitParameters& p = step.parameters.implicit;
   const double allowed = std::min(p.newton_tolerance, p.max_linearization_error);
-  const double error =
-      static_cast<double>(reduce("implicit.linearization_error", mesh.cloth_faces, Real(0),
+  const FaceError error = reduce("implicit.linearization_error", mesh.cloth_faces, FaceError{0, 0},
                                  LinearizationError{.face = mesh.face.view(),
                                                     .inverse = mesh.face_inverse.view(),
                                                     .face_fabric = mesh.face_fabric.view(),
@@ -321,18 +344,19 @@ double Implicit::find_linearization_error(const SubstepContext& step) {
                                                     .dv = dv_.view(),
                                                     .allowed = static_cast<Real>(allowed),
                                                     .to_renew = to_renew_.view()},
-                                 Max{}));
+                                 LargestErrors{});
+  linearization_error_ = static_cast<double>(error.tension);
+  missed_strain_ = static_cast<double>(error.strain);
 
   // Friction of yarns decides which faces are renewed, but not whether there is another iteration.
   if (iteration_ > 0 && step.state.yarns.size() > 0 && to_renew_.size() > 0 &&
-      error > p.newton_tolerance) {
+      linearization_error_ > p.newton_tolerance) {
     free_shape_.resize(mesh.cloth_vertices);
     for_each("implicit.free_shape", mesh.cloth_vertices,
              FreeShape{step.state.x0.view(), free_motion_.view(), free_shape_.view()});
     mark_wrong_friction(context(step), free_shape_.view(),
                         kNegligibleError * static_cast<Real>(allowed), to_renew_.view());
   }
-  return error;
 }
 
 void Implicit::linearize_at_candidate(const SubstepContext& step) {

@@ -49,10 +49,11 @@ class Implicit {
   void renew_no_face(const SubstepContext& step);
   void linearize(SubstepContext& step);
   void find_candidate(SubstepContext& step, const Proximity& proximity, bool solved);
+  int most_iterations(const ImplicitParameters& p) const;
   void solve(SubstepContext& step, const Proximity& proximity, const ContactGoal& goal,
              bool solved);
   void move(SubstepContext& step);
-  double find_linearization_error(const SubstepContext& step);
+  void find_linearization_error(const SubstepContext& step);
   void linearize_at_candidate(const SubstepContext& step);
   ForceContext context(const SubstepContext& step) const {
     return {.mesh = step.mesh,
@@ -76,11 +77,12 @@ class Implicit {
   /// Shape and predicted motion of the linearisation, from the second iteration on [m]
   /// (cloth_vertices), linearize_at_candidate.
   Array<Vec3r> at_, predicted_;
-  Array<Vec3r> free_shape_;       ///< x0 + free_motion_, where yarns have friction [m]
-  Array<std::uint8_t> renewed_;   ///< see Linearization::renewed, linearize_at_candidate
-  Array<std::uint8_t> to_renew_;  ///< the same for the next iteration, find_linearization_error
-  double linearization_error_ = 0;
-  double outer_work_ = 0;  ///< of the forces [J], integrate
+  Array<Vec3r> free_shape_;         ///< x0 + free_motion_, where yarns have friction [m]
+  Array<std::uint8_t> renewed_;     ///< see Linearization::renewed, linearize_at_candidate
+  Array<std::uint8_t> to_renew_;    ///< the same for the next iteration, find_linearization_error
+  double linearization_error_ = 0;  ///< find_linearization_error [N/m]
+  double missed_strain_ = 0;        ///< the strain that it belongs to, find_linearization_error
+  double outer_work_ = 0;           ///< of the forces [J], integrate
 };
 
 }  // namespace icloth::ICLOTH_BUILD
