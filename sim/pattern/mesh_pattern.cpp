@@ -312,12 +312,16 @@ MeshedPattern mesh_with_count(const Pattern& pattern, Index triangles) {
   MeshedPattern best = mesh_pattern(pattern, edge_length_for(pattern, triangles));
 
   // Outlines are cut into whole numbers of edges, so that the estimate misses by some per cent. A
-  // length that is corrected by what came out misses by less, except in the coarsest meshes.
+  // length that is corrected by what came out misses by less, except in the coarsest meshes. Where
+  // it does not, half the correction may.
+  double power = 0.5;
   for (int i = 0; i < kMostCorrections && miss(best) > kCountTolerance; ++i) {
     try {
-      MeshedPattern next = mesh_pattern(pattern, best.edge_length * std::sqrt(ratio(best)));
-      if (miss(next) >= miss(best)) break;
-      best = std::move(next);
+      MeshedPattern next = mesh_pattern(pattern, best.edge_length * std::pow(ratio(best), power));
+      if (miss(next) < miss(best))
+        best = std::move(next);
+      else
+        power *= 0.5;
     } catch (const InputError&) {
       break;  // the pattern cannot be meshed with that length
     }
