@@ -150,24 +150,30 @@ def tier(number, top, bottom, height, at_height, distance):
     return ring
 
 
-def tank():
-    """A top without sleeves, to be worn with the tiered skirt."""
-    size = dict(neck=9, shoulder=(15.5, -2.2), chest=23.5, armhole=22.5, hem=25.5, length=52)
-    pattern = Pattern('tank')
-    front, back = blocks.trunk('front', size, 12, .28), blocks.trunk('back', size, 6, .26)
-    front.place((0, 147.5, 17), (0, 0, 0), 20)
-    back.place((0, 147.5, -21), (0, 180, 0), 20)
+def sleeveless(name, size, neck_height, front_at, back_at, bend):
+    """A shirt without sleeves."""
+    pattern = Pattern(name)
+    front = blocks.trunk('front', size, size['front_neck'], .28)
+    back = blocks.trunk('back', size, size['back_neck'], .26)
+    front.place((0, neck_height, front_at), (0, 0, 0), bend)
+    back.place((0, neck_height, back_at), (0, 180, 0), bend)
     pattern.add(front, back)
     blocks.sew_trunk(pattern, front, back)
     return pattern
 
 
+def tank():
+    """To be worn with the tiered skirt."""
+    size = dict(neck=9, shoulder=(15.5, -2.2), chest=23.5, armhole=22.5, hem=25.5, length=52,
+                front_neck=12, back_neck=6)
+    return sleeveless('tank', size, 147.5, 17, -21, 20)
+
+
 def andy_shirt():
-    """Short sleeves: below those of the jacket, long ones would be pinched in the elbows."""
-    size = dict(neck=7.0, shoulder=(16.2, -2.5), chest=20.5, armhole=19, hem=21.5, length=45,
+    """Without sleeves: between the jacket and the body they would be pinched in the armpits."""
+    size = dict(neck=7.0, shoulder=(13.0, -1.9), chest=20, armhole=18.5, hem=21.5, length=45,
                 front_neck=7, back_neck=2)
-    return shirt('andy_shirt', size, BOY_SHOULDER, 114.5, 14, -17, 17,
-                 sleeve=(14.5, 13, 13.4), arm=(8.5, 5.3))
+    return sleeveless('andy_shirt', size, 115, 20, -23, 22)
 
 
 def andy_trousers():
@@ -186,7 +192,7 @@ def andy_jacket():
     """Open in front, over the shirt."""
     size = dict(neck=8.0, shoulder=(17.5, -2.6), chest=23.5, armhole=21.5, hem=24.5, length=46,
                 front_neck=8, back_neck=2.2)
-    return open_jacket('andy_jacket', size, BOY_SHOULDER, 116, 17, -19, 19,
+    return open_jacket('andy_jacket', size, BOY_SHOULDER, 114, 20, -23, 20,
                        sleeve=(17.5, 31, 14.5), arm=(9.5, 6.4, 4))
 
 

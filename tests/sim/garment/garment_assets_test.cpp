@@ -27,7 +27,7 @@ constexpr Design kDesigns[] = {
     {"tee", 4, 10, 0.665, 1.03},          {"trousers", 4, 14, 0.93, 1.03},
     {"dress", 6, 18, 1.667, 1.03},        {"tank", 2, 4, 0.415, 1.03},
     {"tiered", 14, 32, 1.25, 1.31},       {"flounce", 4, 4, 0.559, 1.03},
-    {"andy_shirt", 4, 10, 0.440, 1.03},   {"andy_trousers", 4, 14, 0.723, 1.03},
+    {"andy_shirt", 2, 4, 0.315, 1.03},    {"andy_trousers", 4, 14, 0.723, 1.03},
     {"andy_jacket", 5, 10, 0.614, 1.03},  {"bishop_blouse", 4, 10, 0.795, 1.03},
     {"bishop_skirt", 6, 12, 1.171, 1.03}, {"bishop_vest", 3, 4, 0.423, 1.03}};
 
