@@ -56,7 +56,8 @@ class Solver final : public Simulator {
   SubstepContext substep(StepReport& report, double start, double dt);
   void find_contacts(SubstepContext& step);
   bool check_candidate(StepReport& report, bool last_resort);
-  bool resolve_by_contacts(SubstepContext& step, bool last_resort);
+  bool resolve_by_contacts(SubstepContext& step, std::int64_t fewest, bool last_resort);
+  bool zones_stretch_cloth(const SubstepContext& step) const;
   bool resolve_by_zones(SubstepContext& step);
   bool resolve_by_rollback(SubstepContext& step);
   void find_impacts(SubstepContext& step, bool first_round);

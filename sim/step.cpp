@@ -23,6 +23,7 @@
 #include <cmath>
 
 #include "sim/mechanics/energy.h"
+#include "sim/mechanics/membrane.h"
 #include "sim/mechanics/yarns.h"
 #include "sim/solver.h"
 #include "sim/state/stillness.h"
@@ -33,6 +34,9 @@ namespace {
 
 /// So few impacts are solved faster by the zones than by another solve of the whole cloth.
 constexpr std::int64_t kFewImpacts = 8;
+
+/// Zones that stretch a face by more than this are solved as contacts all the same.
+constexpr double kMostZoneStretch = 0.1;
 
 /// Runs a stage and adds its wall time to one row of the report.
 template <class Stage>
@@ -175,10 +179,19 @@ bool Solver::try_substep(StepReport& report, double start, double dt, bool last_
   timed(report.ms_implicit, [&] { implicit_.integrate(step, proximity_); });
   if (!check_candidate(report, last_resort)) return false;
   find_impacts(step, true);
-  if (!resolve_by_contacts(step, last_resort)) return false;
+  if (!resolve_by_contacts(step, kFewImpacts, last_resort)) return false;
 
-  // Impacts of the candidate are corrected, or in the last resort taken back.
-  if (resolve_by_zones(step)) return true;
+  // Impacts of the candidate are corrected. Where that stretches the cloth, forces decide anew.
+  bool resolved = resolve_by_zones(step);
+  if (resolved && zones_stretch_cloth(step)) {
+    impact_zones_.back_to_candidate(step);
+    find_impacts(step, true);
+    if (!resolve_by_contacts(step, 1, last_resort)) return false;
+    resolved = resolve_by_zones(step);
+  }
+  if (resolved) return true;
+
+  // In the last resort they are taken back.
   if (!last_resort) return false;
   report.reach(Limit::substep_levels);
   return resolve_by_rollback(step);
@@ -215,14 +228,14 @@ bool Solver::check_candidate(StepReport& report, bool last_resort) {
   return last_resort;
 }
 
-/// Fast cloth meets what was not near it at the start. Many impacts join the contacts, and the
-/// forces decide anew, with stiffness and friction that the zones do not know. False when the new
-/// candidate is wrong.
-bool Solver::resolve_by_contacts(SubstepContext& step, bool last_resort) {
+/// Fast cloth meets what was not near it at the start. So many impacts, `fewest` or more, join the
+/// contacts, and the forces decide anew, with stiffness and friction that the zones do not know.
+/// False when the new candidate is wrong.
+bool Solver::resolve_by_contacts(SubstepContext& step, std::int64_t fewest, bool last_resort) {
   StepReport& report = step.report;
   if (!parameters_.proximity.enabled) return true;
   for (int round = 0; round < parameters_.proximity.late_rounds; ++round) {
-    if (report.impacts_left < kFewImpacts) return true;
+    if (report.impacts_left < fewest) return true;
     report.late_contacts += report.impacts_left;
 
     // The motion and the state of the contacts so far are where the solve goes on from.
@@ -232,6 +245,13 @@ bool Solver::resolve_by_contacts(SubstepContext& step, bool last_resort) {
     find_impacts(step, true);
   }
   return true;
+}
+
+/// Whether the zones have stretched a face that the forces had not, and contacts may mend it.
+bool Solver::zones_stretch_cloth(const SubstepContext& step) const {
+  if (!impact_zones_.corrected()) return false;
+  if (!parameters_.proximity.enabled || parameters_.proximity.late_rounds == 0) return false;
+  return largest_stretch(step.mesh, state_.candidate.view(), state_.x1.view()) > kMostZoneStretch;
 }
 
 /// The impacts of the candidate are known.

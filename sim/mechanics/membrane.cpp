@@ -25,6 +25,18 @@ struct FaceStrain {
   }
 };
 
+/// How much more a face is stretched in one shape than in another one.
+struct FaceStretch {
+  FaceStrain from, to;
+  View<const Int3> face;
+  ICLOTH_HD double operator()(Index i) const {
+    const Int3 f = face[i];
+    bool moved = false;
+    for (int a = 0; a < 3; ++a) moved = moved || !(norm2(to.x[f.v[a]] - from.x[f.v[a]]) == 0);
+    return moved ? to(i) - from(i) : 0;
+  }
+};
+
 struct CombineFaces {
   ICLOTH_HD FaceEnergy operator()(FaceEnergy a, FaceEnergy b) const {
     return {a.energy + b.energy, Max{}(a.strain, b.strain)};
@@ -54,6 +66,13 @@ struct MembraneEnergy {
 double largest_strain(const Topology& mesh, View<const Vec3r> x) {
   return reduce("statistics.strain", mesh.cloth_faces, 0.0,
                 FaceStrain{mesh.face.view(), mesh.face_inverse.view(), x}, Max{});
+}
+
+double largest_stretch(const Topology& mesh, View<const Vec3r> from, View<const Vec3r> to) {
+  const View<const Int3> face = mesh.face.view();
+  const View<const Topology::Inverse> inverse = mesh.face_inverse.view();
+  return reduce("impact_zones.stretch", mesh.cloth_faces, 0.0,
+                FaceStretch{{face, inverse, from}, {face, inverse, to}, face}, Max{});
 }
 
 void Membrane::add_energy(const EnergyContext& c, ForceEnergy& energy) const {

@@ -49,6 +49,10 @@ struct MembraneShare {
 /// The largest principal stretch of a face, less 1, in a shape [m] (≥ cloth_vertices).
 double largest_strain(const Topology& mesh, View<const Vec3r> x);
 
+/// The most by which the largest stretch of a face grows from one shape to another one [m]
+/// (≥ cloth_vertices each).
+double largest_stretch(const Topology& mesh, View<const Vec3r> from, View<const Vec3r> to);
+
 class Membrane : public Force {
  public:
   MembraneShare face_share(const ForceContext& c) const {
