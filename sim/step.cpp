@@ -247,9 +247,11 @@ bool Solver::resolve_by_contacts(SubstepContext& step, std::int64_t fewest, bool
   return true;
 }
 
-/// Whether the zones have stretched a face that the forces had not, and contacts may mend it.
+/// Whether the zones have stretched a face that the forces had not, and contacts may mend it. They
+/// do not where bodies squeeze cloth: it is stretched at the rim, and stiff contacts would keep it
+/// from leaving the bodies.
 bool Solver::zones_stretch_cloth(const SubstepContext& step) const {
-  if (!impact_zones_.corrected()) return false;
+  if (!impact_zones_.corrected() || !state_.let_go.empty()) return false;
   if (!parameters_.proximity.enabled || parameters_.proximity.late_rounds == 0) return false;
   return largest_stretch(step.mesh, state_.candidate.view(), state_.x1.view()) > kMostZoneStretch;
 }
