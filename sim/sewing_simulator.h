@@ -32,7 +32,7 @@ class SewingSimulator final : public Simulator {
   std::uint64_t state_hash() const override { return solver_->state_hash(); }
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
-  double measure(StepReport& report) override { return solver_->measure(report); }
+  double measure(StateReport& report) override { return solver_->measure(report); }
   void report_energies(bool on) override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;

@@ -46,7 +46,7 @@ class Simulator {
   /// Writes what a report says about the present state: energies, strain, speed, seams, hash.
   /// Returns the energy of which StepReport::energy_balance counts the change [J], 0 where energies
   /// are not reported.
-  virtual double measure(StepReport&) { return 0; }
+  virtual double measure(StateReport&) { return 0; }
 
   /// Whether reports have energies and their balance, which takes a few per cent of a step; on at
   /// first. They are 0 while it is off. The motion does not depend on it.

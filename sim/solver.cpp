@@ -118,7 +118,13 @@ void Solver::grow_reserve() {
 
 void Solver::report_energies(bool on) {
   reports_energies_ = on;
+  forget_measures();
+}
+
+/// The state has become another one than that of the last report, or is measured in another way.
+void Solver::forget_measures() {
   energy_.reset();
+  measured_.reset();
 }
 
 void Solver::use_device() const { select_device(device_); }
@@ -157,7 +163,7 @@ void Solver::set_parameters(const Parameters& parameters) {
 
   // The energy depends on the parameters, still cloth may start to move, and a new thickness needs
   // other boxes.
-  energy_.reset();
+  forget_measures();
   disturb(state_);
   broad_phase_.invalidate(state_);
 }
@@ -240,7 +246,7 @@ void Solver::rest_cloth() {
   state_.held.resize(0);
   state_.past.forget();
   disturb(state_);
-  energy_.reset();
+  forget_measures();
 }
 
 double Solver::largest_speed() const {
@@ -365,7 +371,7 @@ void Solver::restore(const Snapshot& snapshot) {
   use_device();
   upload(snapshot, state_);
   broad_phase_.follow_memory();
-  energy_.reset();
+  forget_measures();
 }
 
 std::vector<HandleState> Solver::handles() const {

@@ -37,7 +37,7 @@ class Solver final : public Simulator {
   std::uint64_t state_hash() const override;
   void positions(std::vector<Vec3f>& out) const override;
   void positions_on_device(std::unique_ptr<DevicePositions>& slot) const override;
-  double measure(StepReport& report) override;
+  double measure(StateReport& report) override;
   void report_energies(bool on) override;
   Snapshot snapshot() const override;
   void restore(const Snapshot& snapshot) override;
@@ -84,6 +84,7 @@ class Solver final : public Simulator {
   void rest_cloth();
   void save_start();
   void back_to_start();
+  void forget_measures();
   void reserve_memory();
   void grow_reserve();
   std::vector<Vec3d> cloth_positions() const;
@@ -107,8 +108,9 @@ class Solver final : public Simulator {
   bool reports_energies_ = true;
   /// Energy of the state where it is known [J], step. It follows from memory and parameters.
   std::optional<double> energy_;
-  double work_ = 0;           ///< on the cloth in the step so far [J], accept_substep
-  Array<Vec3r> candidate_v_;  ///< velocity without impacts (cloth_vertices), zone_work
+  std::optional<StateReport> measured_;  ///< of the state where it is known, report_end_state
+  double work_ = 0;                      ///< on the cloth in the step so far [J], accept_substep
+  Array<Vec3r> candidate_v_;             ///< velocity without impacts (cloth_vertices), zone_work
 
   BroadPhase broad_phase_;
   Proximity proximity_;

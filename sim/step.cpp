@@ -140,15 +140,21 @@ void Solver::finish_step(StepReport& report) {
   report.step = ++state_.step;
 }
 
-/// Energies and hash are those of the state that was reached, or kept.
+/// Energies and hash are those of the state that was reached, or kept. A step that was slept
+/// through has reached nothing new.
 void Solver::report_end_state(StepReport& report) {
+  if (report.accepted && report.substeps == 0 && measured_) {
+    static_cast<StateReport&>(report) = *measured_;
+    return;
+  }
   const double energy = measure(report);
+  measured_ = report;
   if (!reports_energies_) return;
   if (report.accepted) report.energy_balance = energy - *energy_ - work_;
   energy_ = energy;
 }
 
-double Solver::measure(StepReport& report) {
+double Solver::measure(StateReport& report) {
   use_device();
   report.state_hash = hash_state(state_);
   report.pinched = pinch_.vertices(state_);

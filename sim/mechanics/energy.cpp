@@ -92,7 +92,7 @@ StateStatistics statistics_of(const Forces& forces, const EnergyContext& shape,
 }
 
 double report_state(const Forces& forces, const Topology& mesh, const State& state,
-                    const Parameters& parameters, StepReport& report) {
+                    const Parameters& parameters, StateReport& report) {
   const StateStatistics statistics =
       statistics_of(forces, {mesh, parameters, state.x1.view()}, state.mass.view(), state.v.view());
   report.kinetic_energy = statistics.kinetic;
@@ -103,7 +103,7 @@ double report_state(const Forces& forces, const Topology& mesh, const State& sta
   return statistics.energy();
 }
 
-void report_extremes(const Topology& mesh, const State& state, StepReport& report) {
+void report_extremes(const Topology& mesh, const State& state, StateReport& report) {
   report.max_strain = largest_strain(mesh, state.x1.view());
   report.max_speed = std::sqrt(
       reduce("statistics.motion", mesh.cloth_vertices, 0.0, Speed2{state.v.view()}, Max{}));

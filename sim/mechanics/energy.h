@@ -21,10 +21,10 @@ StateStatistics statistics_of(const Forces& forces, const EnergyContext& shape,
 
 /// Writes the statistics of the state (x1, v) to the report; returns its energy [J].
 double report_state(const Forces& forces, const Topology& mesh, const State& state,
-                    const Parameters& parameters, StepReport& report);
+                    const Parameters& parameters, StateReport& report);
 
 /// Writes the largest strain and speed of the state (x1, v) to the report.
-void report_extremes(const Topology& mesh, const State& state, StepReport& report);
+void report_extremes(const Topology& mesh, const State& state, StateReport& report);
 
 /// 64-bit hash of the bits of all positions and velocities; does not depend on the thread count.
 std::uint64_t hash_state(const State& state);

@@ -217,7 +217,7 @@ void watch_seams(const Topology& mesh, const Parameters& parameters, State& stat
                      seam_law(mesh, parameters), state.stitches.view()});
 }
 
-void report_seams(const Topology& mesh, const State& state, StepReport& report) {
+void report_seams(const Topology& mesh, const State& state, StateReport& report) {
   if (mesh.stitches.empty()) return;
   const SeamSums sums = reduce("seams.report", mesh.stitches.size(), SeamSums{0, 0, 0},
                                SeamSumsOf{mesh.stitches.view(), state.stitches.view(),

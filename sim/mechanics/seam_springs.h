@@ -39,6 +39,6 @@ void advance_seams(const Topology& mesh, const Parameters& parameters, State& st
 void watch_seams(const Topology& mesh, const Parameters& parameters, State& state);
 
 /// Writes what the statistics say about seams.
-void report_seams(const Topology& mesh, const State& state, StepReport& report);
+void report_seams(const Topology& mesh, const State& state, StateReport& report);
 
 }  // namespace icloth::ICLOTH_BUILD

@@ -20,7 +20,21 @@ struct OffendingPair {
   std::array<Index, 4> vertices{};  ///< vf: vertex, face; ee: a0 a1 b0 b1
 };
 
-struct StepReport {
+/// What a report says of the state at the end of a step. It follows from the state alone.
+struct StateReport {
+  /// Energies [J]; 0 where nobody asked for them (sim/simulator.h).
+  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;
+  double max_strain = 0;     ///< largest principal stretch − 1
+  double max_speed = 0;      ///< [m/s]
+  std::int64_t pinched = 0;  ///< cloth vertices that are let go from a body (collision/pinch.h)
+  /// Stitched pairs of open seams that are not closed yet, and those among them that come no
+  /// nearer.
+  std::int64_t open_pairs = 0, stuck_pairs = 0;
+  double seam_gap = 0;  ///< largest distance of a stitched pair [m]
+  std::uint64_t state_hash = 0;
+};
+
+struct StepReport : StateReport {
   std::int64_t step = 0;
   double time = 0;  ///< at the end of the step [s]
   double dt = 0;    ///< [s]
@@ -40,11 +54,7 @@ struct StepReport {
   std::int64_t cg_iterations = 0;  ///< of all linear solves together
   double cg_residual = 0;          ///< ‖b − AΔv‖₂ / ‖b‖₂, true
   double cg_bytes = 0;             ///< that the iterations had to move at least; no column
-  /// Energies [J]; like energy_balance they are 0 where nobody asked for them (sim/simulator.h).
-  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;
-  double max_strain = 0;  ///< largest principal stretch − 1
-  double max_speed = 0;   ///< [m/s]
-  double min_gap = 0;     ///< smallest proximity distance at the start of the step [m], h if none
+  double min_gap = 0;  ///< smallest proximity distance at the start of the step [m], h if none
   /// |Σ b − AΔv| / (dt Σ m) over the free vertices, of the last solve of a substep and the largest
   /// of all substeps: the force per mass that CG, where it stopped, makes or loses [m/s²].
   double momentum_error = 0;
@@ -54,19 +64,13 @@ struct StepReport {
   /// (all that they changed in those energies) [J]. Negative: what damping, of the fabric and of
   /// the integrator, took away; positive: made from nothing, an error. The errors of CG and of the
   /// linearisation are in it, what the measured fabrics, whose stiffness follows the strain, give
-  /// or take along a path, and what the weld of a seam changes. 0 of a refused step.
+  /// or take along a path, and what the weld of a seam changes. 0 of a refused step, and where
+  /// nobody asked for energies.
   double energy_balance = 0;
   /// The limits that were reached in the step, in refused substeps too: a bit each, see limits.h.
   std::int64_t limits = 0;
   void reach(Limit limit) { limits |= bit_of(limit); }
   bool reached(Limit limit) const { return (limits & bit_of(limit)) != 0; }
-  /// Cloth vertices that are let go from a body at the end of the step (sim/collision/pinch.h).
-  std::int64_t pinched = 0;
-  /// Stitched pairs of open seams that are not closed yet, and those among them that come no
-  /// nearer.
-  std::int64_t open_pairs = 0, stuck_pairs = 0;
-  double seam_gap = 0;  ///< largest distance of a stitched pair [m]
-  std::uint64_t state_hash = 0;
 
   /// Impacts that were found in the step: before the first round of zones and after each round, for
   /// every attempt at a substep one after the other. Rounds of the last resort are left out.

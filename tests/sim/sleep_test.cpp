@@ -76,6 +76,27 @@ TEST_P(Sleep, ChangesTheClockAlone) {
   EXPECT_EQ(simulator->state_hash(), hash);
 }
 
+TEST_P(Sleep, ReportsTheStateThatItKeeps) {
+  const auto simulator = asleep();
+  StateReport measured;
+  simulator->measure(measured);
+  const StepReport asleep = simulator->step({});
+  EXPECT_EQ(asleep.state_hash, measured.state_hash);
+  EXPECT_EQ(asleep.kinetic_energy, measured.kinetic_energy);
+  EXPECT_EQ(asleep.elastic_energy, measured.elastic_energy);
+  EXPECT_EQ(asleep.gravity_energy, measured.gravity_energy);
+  EXPECT_EQ(asleep.max_strain, measured.max_strain);
+  EXPECT_EQ(asleep.max_speed, measured.max_speed);
+  EXPECT_EQ(asleep.energy_balance, 0);
+  EXPECT_GT(asleep.elastic_energy, 0);
+
+  // Energies are left out as soon as nobody asks for them, and are back when somebody does.
+  simulator->report_energies(false);
+  EXPECT_EQ(simulator->step({}).elastic_energy, 0);
+  simulator->report_energies(true);
+  EXPECT_EQ(simulator->step({}).elastic_energy, asleep.elastic_energy);
+}
+
 TEST_P(Sleep, LeavesTheClothWhereItWouldGo) {
   const auto sleeping = asleep(), awake = make_simulator(GetParam(), hanging_scene(false));
   EXPECT_FALSE(run_until(*awake, kAsleep + 9));
