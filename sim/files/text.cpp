@@ -133,6 +133,32 @@ std::string shown_path(std::string_view path) {
   return "…" + text.substr(offset_of(text, count - (kMostQuoted - 1)));
 }
 
+std::string markup_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
 std::string number_text(double value) {
   constexpr double kLargestWhole = 1e15;
   if (value == std::floor(value) && std::fabs(value) < kLargestWhole)

@@ -23,6 +23,9 @@ std::string file_line(std::string name);
 /// The excerpt in single quotes.
 std::string in_quotes(std::string_view input);
 
+/// The text as HTML, SVG and XML may hold it, between their marks and in quotes.
+std::string markup_text(std::string_view text);
+
 /// A path as a message may repeat it: the end, which tells files apart, where it is too long.
 std::string shown_path(std::string_view path);
 

@@ -20,23 +20,8 @@ std::string fixed(double value) {
   return text;
 }
 
-/// Text of the file as XML may hold it.
-std::string escaped(const std::string& input) {
-  std::string result;
-  for (const char c : excerpt(input)) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
+/// Text of the file, as a drawing may repeat it.
+std::string written(const std::string& input) { return markup_text(excerpt(input)); }
 
 /// A panel on the page: from metres in its plane to centimetres with y downwards.
 struct OnPage {
@@ -158,8 +143,8 @@ void Drawing::draw_panel(std::size_t p, const OnPage& page) {
 
   // Name and area stand in the middle of the box, which is inside of most panels.
   const Vec2d middle = page(0.5 * (page.low + page.high));
-  write(middle, 2.4, "#202020", escaped(panel.name));
-  const std::string label = panel.label.empty() ? "" : escaped(panel.label) + ", ";
+  write(middle, 2.4, "#202020", written(panel.name));
+  const std::string label = panel.label.empty() ? "" : written(panel.label) + ", ";
   const std::string side = panel.clockwise ? ", wrong side" : "";
   write(middle + Vec2d{0, 2.4}, 1.4, "#606060",
         label + std::to_string(std::lround(1e4 * std::fabs(signed_area(panel)))) + " cm²" + side);
@@ -173,7 +158,7 @@ void Drawing::draw_grain(const Panel& panel, const OnPage& page) {
   svg_ += "<path fill=\"none\" stroke=\"#a09880\" stroke-width=\"0.2\" d=\"M " + fixed(foot.x) +
           ' ' + fixed(foot.y) + " L " + fixed(tip.x) + ' ' + fixed(tip.y) + " m -0.6 1.4 L " +
           fixed(tip.x) + ' ' + fixed(tip.y) + " l 0.6 1.4\"><title>grain of " +
-          escaped(panel.name) + "</title></path>\n";
+          written(panel.name) + "</title></path>\n";
 }
 
 void Drawing::draw_edge(std::size_t p, std::size_t e, const OnPage& page) {
@@ -202,7 +187,7 @@ void Drawing::draw_edge(std::size_t p, std::size_t e, const OnPage& page) {
 
   // Labels of neighbouring edges are at two distances, so that long ones pass each other.
   if (!edge.label.empty())
-    write(middle - (e % 2 == 0 ? 2.9 : 4.0) * inwards, 0.9, colour, escaped(edge.label));
+    write(middle - (e % 2 == 0 ? 2.9 : 4.0) * inwards, 0.9, colour, written(edge.label));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/suites/report/table.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -75,7 +76,8 @@ double to_x(double place) { return kLeft + place * (kWidth - kLeft - kRight); }
 double to_y(double place) { return kHeight - kBottom - place * (kHeight - kTop - kBottom); }
 
 std::string label(double x, double y, const char* style, const std::string& text) {
-  return format("<text x=\"%.1f\" y=\"%.1f\" ", x, y) + style + ">" + html_text(text) + "</text>\n";
+  return format("<text x=\"%.1f\" y=\"%.1f\" ", x, y) + style + ">" + markup_text(text) +
+         "</text>\n";
 }
 
 /// The lines of the grid with their numbers.

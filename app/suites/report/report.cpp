@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "sim/files/file_io.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 namespace {
@@ -32,12 +33,12 @@ Report::Report(std::string title, nlohmann::ordered_json machine) : title_(std::
 }
 
 void Report::heading(const std::string& text) {
-  body_ += "<h2>" + html_text(text) + "</h2>\n";
+  body_ += "<h2>" + markup_text(text) + "</h2>\n";
   std::printf("\n== %s\n", text.c_str());
 }
 
 void Report::text(const std::string& text) {
-  body_ += "<p>" + html_text(text) + "</p>\n";
+  body_ += "<p>" + markup_text(text) + "</p>\n";
   std::printf("%s\n", text.c_str());
 }
 
@@ -66,8 +67,8 @@ void Report::add(const Section& section) {
 void Report::write(const std::string& folder) const {
   write_file(folder + "/report.html",
              "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
-                 html_text(title_) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" +
-                 html_text(title_) + "</h1>\n" + body_ + "</body></html>\n");
+                 markup_text(title_) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" +
+                 markup_text(title_) + "</h1>\n" + body_ + "</body></html>\n");
   write_file(folder + "/results.json", results_.dump(1) + "\n");
   for (const Table& table : tables_) write_file(folder + "/" + table.name() + ".csv", table.csv());
 }

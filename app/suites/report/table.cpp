@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "sim/files/text.h"
+
 namespace icloth {
 namespace {
 
@@ -78,13 +80,13 @@ std::string Table::csv() const {
 }
 
 std::string Table::html() const {
-  std::string out = "<table><caption>" + html_text(title_) + "</caption>\n<tr>";
-  for (const std::string& column : columns_) out += "<th>" + html_text(column) + "</th>";
+  std::string out = "<table><caption>" + markup_text(title_) + "</caption>\n<tr>";
+  for (const std::string& column : columns_) out += "<th>" + markup_text(column) + "</th>";
   out += "</tr>\n";
   for (const auto& row : rows_) {
     out += "<tr>";
     for (const std::string& cell : row)
-      out += (is_number(cell) ? "<td class=\"n\">" : "<td>") + html_text(cell) + "</td>";
+      out += (is_number(cell) ? "<td class=\"n\">" : "<td>") + markup_text(cell) + "</td>";
     out += "</tr>\n";
   }
   return out + "</table>\n";
@@ -94,27 +96,6 @@ std::string format_number(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
-}
-
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    // These three characters have a meaning in HTML.
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 }  // namespace icloth

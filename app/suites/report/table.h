@@ -34,7 +34,4 @@ class Table {
 /// A number with so many significant digits: "1234", "0.0123", "1.2e-05".
 std::string format_number(double value, int digits = 4);
 
-/// The text with &, < and > made safe.
-std::string html_text(const std::string& text);
-
 }  // namespace icloth

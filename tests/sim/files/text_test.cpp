@@ -64,6 +64,11 @@ TEST(Text, NoWordOfAnErrorIsLongerThanInputMayBe) {
   EXPECT_LT(std::string_view(error.what()).size(), 120u) << error.what();
 }
 
+TEST(Text, MarkupHasNoMarksOfItsOwn) {
+  EXPECT_EQ(markup_text("a < b & \"c\" > 'd'"), "a &lt; b &amp; &quot;c&quot; &gt; &#39;d&#39;");
+  EXPECT_EQ(markup_text(""), "");
+}
+
 TEST(Text, NumbersReadBackAsTheSame) {
   EXPECT_EQ(number_text(0.1), "0.1");
   EXPECT_EQ(number_text(-3), "-3");
