@@ -6,7 +6,7 @@ build_packages=(
   zlib1g-dev libglfw3-dev libimgui-dev libstb-dev python3-glad libgl-dev libopengl-dev libegl-dev libgl1-mesa-dri
   libgtest-dev
 )
-test_packages=(xvfb xdotool python3)
+test_packages=(xvfb xdotool python3 ffmpeg)
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace icloth {
@@ -38,6 +39,17 @@ struct ImageTolerance {
   double fraction = 0.003;  ///< largest share of the pixels with such a channel
   int blob_channel = 32;    ///< difference of a channel that is seen [1/255]
   int blob_pixels = 48;     ///< largest connected (8 neighbours) set of such pixels
+};
+
+/// A tolerance that users choose by its name.
+struct NamedTolerance {
+  std::string_view name;
+  ImageTolerance tolerance;
+};
+inline constexpr NamedTolerance kTolerances[] = {
+    {"exact", {.channel = 0, .fraction = 0, .blob_channel = 0, .blob_pixels = 0}},
+    {"software", {}},                                     ///< one rasteriser, other processors
+    {"device", {.fraction = 0.015, .blob_pixels = 200}},  ///< a GPU and a software rasteriser
 };
 
 struct ImageDifference {

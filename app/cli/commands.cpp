@@ -161,18 +161,26 @@ void Commands::add_render() {
     return 3;
 #endif
   };
-  CLI::App* command = add_command("render", "headless pictures", action, &render.simulation);
+  CLI::App* command =
+      add_command("render", "headless pictures and videos", action, &render.simulation);
 
   // The scene, the device and the length of the run before the picture.
   add_simulation_options(*command, render.simulation, true);
 
   // These options say where the picture goes, what it shows and how well.
-  command->add_option("--out", render.out, "FILE.png")->capture_default_str();
-  command->add_option("--size", render.size, "WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--out", render.out, "FILE.png, or FILE.mp4 for a video of the whole run")
+      ->capture_default_str();
+  command
+      ->add_option("--fps", render.frames_per_second,
+                   "frames per second of a video, which plays at the speed of the simulation")
+      ->check(CLI::Range(1, 240))
+      ->capture_default_str();
+  command->add_option("--size", render.size,
+                      "WIDTHxHEIGHT; default: 1280x720, or that of --compare");
   command->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
   command->add_option("--view", render.view, "what is shown")->capture_default_str();
-  command->add_option("--quality", render.quality, "draft, interactive or still")
-      ->capture_default_str();
+  command->add_option("--quality", render.quality,
+                      "draft, interactive or still; default: still, for videos interactive");
 
   command
       ->add_option("--vertices", render.vertices,
@@ -180,6 +188,15 @@ void Commands::add_render() {
       ->check(CLI::IsMember({"auto", "interop", "host"}))
       ->capture_default_str();
   command->add_option("--stats", render.stats_file, "statistics of every step, FILE.csv or .json");
+
+  // A picture can be held against the one that it was before.
+  CLI::Option* compare = command->add_option(
+      "--compare", render.golden,
+      "GOLDEN.png: exit 1 where the picture differs, with difference and page beside --out");
+  command->add_flag("--update", render.update, "write GOLDEN.png anew instead")->needs(compare);
+  command->add_option("--tolerance", render.tolerance, "of --compare: exact, software or device")
+      ->needs(compare)
+      ->capture_default_str();
 }
 
 void Commands::add_export() {

@@ -5,35 +5,15 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "render/comparison_page.h"
 #include "render/image.h"
 
 namespace icloth {
 
 inline std::string golden_path(const std::string& name) {
   return std::string(ICLOTH_TEST_FOLDER) + "/goldens/" + name + ".png";
-}
-
-/// Actual, expected, difference × 16, and a page that swaps the first two under the pointer.
-inline void write_failure(const std::string& name, const Image& actual, const Image& expected) {
-  const std::filesystem::path folder = ICLOTH_SCREENSHOT_FOLDER;
-  std::filesystem::create_directories(folder);
-  const auto file = [&](const char* kind) { return (folder / (name + kind)).string(); };
-  write_png(file("_actual.png"), actual);
-  write_png(file("_expected.png"), expected);
-  const bool same_size = actual.width == expected.width && actual.height == expected.height;
-  if (same_size) write_png(file("_difference.png"), difference_image(actual, expected));
-  std::ofstream page(file(".html"));
-  page << "<!doctype html><title>" << name << "</title>\n"
-       << "<style>.swap{position:relative;display:inline-block}.swap img+img{position:absolute;"
-          "left:0;top:0;opacity:0}.swap:hover img+img{opacity:1}</style>\n"
-       << "<p>" << name << ": " << compare(actual, expected).text()
-       << ". Left: actual, under the pointer expected. Right: difference &times; 16.</p>\n"
-       << "<div class=swap><img src='" << name << "_actual.png'><img src='" << name
-       << "_expected.png'></div>\n";
-  if (same_size) page << "<img src='" << name << "_difference.png'>\n";
 }
 
 /// ICLOTH_UPDATE_GOLDEN=1 writes the golden instead. A missing golden fails.
@@ -49,9 +29,13 @@ inline ::testing::AssertionResult matches_golden(const std::string& name, const 
   const Image expected = read_png(path);
   const ImageDifference difference = compare(actual, expected, tolerance);
   if (difference.accepted(tolerance)) return ::testing::AssertionSuccess();
-  write_failure(name, actual, expected);
-  return ::testing::AssertionFailure() << name << ": " << difference.text() << "; see "
-                                       << ICLOTH_SCREENSHOT_FOLDER << "/" << name << ".html";
+  const std::filesystem::path folder = ICLOTH_SCREENSHOT_FOLDER;
+  std::filesystem::create_directories(folder);
+  const std::string picture = (folder / (name + ".png")).string();
+  write_png(picture, actual);
+  return ::testing::AssertionFailure()
+         << name << ": " << difference.text() << "; see "
+         << write_comparison_page(picture, actual, expected, difference);
 }
 
 }  // namespace icloth

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
-#include <filesystem>
+#include <optional>
 
+#include "app/cli/commands/golden_picture.h"
 #include "app/common/camera_json.h"
 #include "app/common/dressing_progress.h"
 #include "app/common/element_names.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
+#include "app/common/video_file.h"
 #include "render/gl_context_egl.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
@@ -35,20 +38,28 @@ Size parse_size(const std::string& text) {
   const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
   const auto height = cross ? std::from_chars(width.ptr + 1, end, size.height) : width;
 
-  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 16384; };
-  if (!cross || height.ec != std::errc() || height.ptr != end || !fits(size.width) ||
-      !fits(size.height)) {
+  if (!cross || height.ec != std::errc() || height.ptr != end ||
+      !is_picture_size(size.width, size.height)) {
     throw InputError("--size " + excerpt(text) +
                      ": expected WIDTHxHEIGHT, both from 16 to 16384 pixels");
   }
   return size;
 }
 
-Quality parse_quality(const std::string& name) {
+/// The quality that was asked for. Videos have too many frames for the best one.
+Quality choose_quality(const std::string& name, bool video) {
+  if (name.empty()) return video ? Quality::interactive : Quality::still;
   if (name == "draft") return Quality::draft;
   if (name == "interactive") return Quality::interactive;
   if (name == "still") return Quality::still;
   throw InputError("--quality " + name + ": expected draft, interactive or still");
+}
+
+/// The size that was asked for, else that of the golden picture.
+Size choose_size(const RenderOptions& options, const std::optional<GoldenPicture>& golden) {
+  if (!options.size.empty()) return parse_size(options.size);
+  if (golden && golden->image) return {golden->image->width, golden->image->height};
+  return {1280, 720};
 }
 
 /// The path by which vertices shall reach the GPU. Throws DeviceError when interop is demanded and
@@ -64,15 +75,15 @@ VertexOptions choose_vertices(const RenderOptions& options, Build build) {
   return {};
 }
 
-void check_out(const std::string& out) {
-  const std::filesystem::path path(out);
-  if (path.extension() == ".mp4")
-    throw InputError("--out " + shown_path(out) + ": videos are not supported, expected FILE.png");
-  if (path.extension() != ".png")
-    throw InputError("--out " + shown_path(out) + ": expected FILE.png");
-  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path()))
-    throw InputError("--out " + shown_path(out) + ": there is no folder " +
-                     in_quotes(path.parent_path().string()));
+bool is_video(const std::string& out) { return lower_extension(out) == ".mp4"; }
+
+void check_out(const RenderOptions& options) {
+  const std::string& out = options.out;
+  if (!is_video(out) && lower_extension(out) != ".png")
+    throw InputError("--out " + shown_path(out) + ": expected FILE.png or FILE.mp4");
+  if (is_video(out) && !options.golden.empty())
+    throw InputError("--compare: is for pictures, expected --out FILE.png");
+  require_folder("--out", out);
 }
 
 /// Reads a camera from a JSON file.
@@ -130,15 +141,54 @@ void mark_start_intersections(const Scene& scene, bool single_precision, const W
   shown.marked_faces.insert(shown.marked_faces.end(), close.begin(), close.end());
 }
 
-Image draw(Renderer& renderer, const Shown& shown, const Camera& camera, Size size, ViewMode view) {
-  Frame frame;
-  frame.positions = shown.positions;
-  frame.on_device = shown.on_device.get();
-  frame.handles = shown.handles;
-  frame.marked_faces = shown.marked_faces;
-  frame.view = view;
-  return renderer.picture(frame, camera, size.width, size.height);
-}
+/// Draws states as the options ask for.
+struct Painter {
+  Renderer& renderer;
+  const Camera& camera;
+  Size size;
+  ViewMode view;
+
+  Image draw(const Shown& shown) const {
+    Frame frame;
+    frame.positions = shown.positions;
+    frame.on_device = shown.on_device.get();
+    frame.handles = shown.handles;
+    frame.marked_faces = shown.marked_faces;
+    frame.view = view;
+    return renderer.picture(frame, camera, size.width, size.height);
+  }
+};
+
+/// A video of a run: each of its frames shows the first state at its time or after it.
+class Film {
+ public:
+  Film(const RenderOptions& options, Size size)
+      : file_(options.out, size.width, size.height, options.frames_per_second),
+        per_second_(options.frames_per_second) {}
+
+  /// Whether the state at this time is to be shown.
+  bool wants(double time) const { return frames_due(time) > 0; }
+  void add(const Image& picture, double time) {
+    const int due = frames_due(time);
+    file_.add(picture, due);
+    frames_ += due;
+  }
+
+  /// Ends the video. Where the run failed, what is marked stays for a second.
+  void finish(const Image& last, bool clean) {
+    if (!clean) file_.add(last, per_second_);
+    file_.finish();
+  }
+
+ private:
+  /// The clock adds up steps, so that a frame may be met a little early.
+  int frames_due(double time) const {
+    return static_cast<int>(std::floor(time * per_second_ + 1e-6)) + 1 - frames_;
+  }
+
+  VideoFile file_;
+  int per_second_, frames_ = 0;
+};
 
 }  // namespace
 
@@ -146,10 +196,14 @@ int run_render(const RenderOptions& options) {
   // Options are checked before anything takes time.
   const SimulationOptions& common = options.simulation;
   const Build build = choose_build(common);
-  const Size size = parse_size(options.size);
+  std::optional<GoldenPicture> golden;
+  if (!options.golden.empty())
+    golden = open_golden(options.golden, options.out, options.tolerance, options.update);
+  const Size size = choose_size(options, golden);
   const ViewMode view = parse_view_mode(options.view);
-  const Quality quality = parse_quality(options.quality);
-  check_out(options.out);
+  const bool video = is_video(options.out);
+  const Quality quality = choose_quality(options.quality, video);
+  check_out(options);
 
   // The scene, the camera and the renderer are made next, so that they fail before the long part.
   HeadlessJob job;
@@ -170,16 +224,23 @@ int run_render(const RenderOptions& options) {
   set_thread_count(common.threads);
   StatisticsFile stats(options.stats_file);
 
-  // The last accepted state is kept for the picture; a refused one adds its offending faces.
+  // The last accepted state is kept for the picture; a refused one adds its offending faces. A
+  // video takes more of them.
   Shown shown;
-  job.watch = [&](const Simulator& simulator, const StepReport* report, bool) {
+  const Painter painter{renderer, camera, size, view};
+  std::optional<Film> film;
+  if (video) film.emplace(options, size);
+  job.interruptible = video;
+  job.watch = [&](const Simulator& simulator, const StepReport* report, bool last) {
     if (report) stats.add(*report);
     if (report && !report->accepted)
       shown.marked_faces = faces_of_pairs(world.face, report->offending);
-    if (simulator.step_index() < job.steps && (!report || report->accepted)) return;
+    const bool filmed = film && film->wants(simulator.time());
+    if (!last && !filmed) return;
     simulator.positions_on_device(shown.on_device);
     simulator.positions(shown.positions);
     shown.handles = simulator.handles();
+    if (filmed) film->add(painter.draw(shown), simulator.time());
   };
 
   const HeadlessResult result = run_headless(job);
@@ -188,17 +249,22 @@ int run_render(const RenderOptions& options) {
     mark_start_intersections(*job.scene, build != Build::cpu64, world, result, shown);
 
   // A picture without interop is no success when interop was demanded.
-  const Image image = draw(renderer, shown, camera, size, view);
+  const Image image = painter.draw(shown);
   if (options.vertices == "interop" && shown.on_device && !renderer.shares_vertices())
     throw DeviceError("--vertices interop: " + renderer.upload_path());
-  write_png(options.out, image);
+  if (film)
+    film->finish(image, result.clean());
+  else
+    write_png(options.out, image);
 
   if (!common.quiet && !result.start_refused) {
     std::fputs(result.statistics.table(result.penetrations, result.state_hash).c_str(), stdout);
     std::printf("vertices by %s\n", renderer.upload_path().c_str());
   }
   if (!common.quiet) std::printf("%s\n", options.out.c_str());
-  return result.clean() ? 0 : 1;
+  const bool good =
+      !golden || check_golden(*golden, options.out, image, result.clean(), common.quiet);
+  return good && result.clean() ? 0 : 1;
 }
 
 }  // namespace icloth

@@ -419,13 +419,6 @@ TEST_F(Cli, InfoNamesTheBuilds) {
     EXPECT_TRUE(contains(info.out, part)) << info.out;
 }
 
-TEST_F(Cli, RenderRefusesVideos) {
-  const Outcome outcome = icloth("render scarf --device cpu --out scarf.mp4");
-  if (outcome.code == 3) GTEST_SKIP() << outcome.err;
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(contains(outcome.err, "videos are not supported, expected FILE.png")) << outcome.err;
-}
-
 TEST_F(Cli, RenderSaysHowVerticesReachOpenGL) {
   write("drop.json", kDrop);
   const std::string render = "render drop.json --steps 5 --size 160x120 --quality draft ";
