@@ -178,7 +178,8 @@ void Commands::add_render() {
   command->add_option("--size", render.size,
                       "WIDTHxHEIGHT; default: 1280x720, or that of --compare");
   command->add_option("--camera", render.camera, "camera of the scene, or FILE.json");
-  command->add_option("--view", render.view, "what is shown")->capture_default_str();
+  command->add_option("--view", render.view, "shaded, wireframe or strain")->capture_default_str();
+  command->add_flag("!--no-legend", render.legend, "leave out what the colours of a view mean");
   command->add_option("--quality", render.quality,
                       "draft, interactive or still; default: still, for videos interactive");
 

@@ -208,6 +208,7 @@ void Viewer::draw_panels() {
                        .scale = scale};
   if (state_.panels) draw_side_panel(context, {0, 0, side, high - bar});
   draw_status_bar(context, status_texts(), {0, high - bar, wide, bar});
+  draw_legend(context, view_, kStrainRange);
   draw_failure(context, view_);
   draw_help(context, view_);
   draw_menu();

@@ -85,6 +85,7 @@ vec3 body(vec3 p, vec3 n, vec3 v, vec3 albedo) {
 }
 
 // Slate, teal, green, yellow, red: ends differ in lightness too.
+// The colours of legend.cpp.
 vec3 scale_colour(float s) {
   const vec3 stops[5] = vec3[](vec3(0.09, 0.13, 0.30), vec3(0.05, 0.34, 0.46), vec3(0.25, 0.58, 0.26),
                                vec3(0.93, 0.71, 0.10), vec3(0.80, 0.07, 0.04));

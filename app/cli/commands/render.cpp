@@ -14,6 +14,7 @@
 #include "app/common/options.h"
 #include "app/common/video_file.h"
 #include "render/gl_context_egl.h"
+#include "render/legend.h"
 #include "render/renderer.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/box.h"
@@ -147,6 +148,7 @@ struct Painter {
   const Camera& camera;
   Size size;
   ViewMode view;
+  bool has_legend;
 
   Image draw(const Shown& shown) const {
     Frame frame;
@@ -155,7 +157,10 @@ struct Painter {
     frame.handles = shown.handles;
     frame.marked_faces = shown.marked_faces;
     frame.view = view;
-    return renderer.picture(frame, camera, size.width, size.height);
+    Image image = renderer.picture(frame, camera, size.width, size.height);
+    const std::optional<Legend> legend = legend_of(view, frame.strain_range);
+    if (has_legend && legend) draw_legend(*legend, image);
+    return image;
   }
 };
 
@@ -227,7 +232,7 @@ int run_render(const RenderOptions& options) {
   // The last accepted state is kept for the picture; a refused one adds its offending faces. A
   // video takes more of them.
   Shown shown;
-  const Painter painter{renderer, camera, size, view};
+  const Painter painter{renderer, camera, size, view, options.legend};
   std::optional<Film> film;
   if (video) film.emplace(options, size);
   job.interruptible = video;

@@ -12,6 +12,7 @@ struct RenderOptions {
   std::string size;    ///< WIDTHxHEIGHT; empty: that of the golden picture, or 1280x720 without one
   std::string camera;  ///< name in the scene, or FILE.json; empty: the first
   std::string view = "shaded";
+  bool legend = true;   ///< of the colours of the view, where they have a meaning
   std::string quality;  ///< draft, interactive or still; empty: still, for videos interactive
   std::string vertices = "auto";       ///< upload path of vertices: auto, interop or host
   std::string out = "icloth.png";      ///< FILE.png, or FILE.mp4 for a video of the whole run

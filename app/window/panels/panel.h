@@ -92,6 +92,9 @@ void draw_estimates(const StepReport& report, const Parameters& parameters);
 void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect& place);
 /// Says why nothing goes on, over the top of the view; draws nothing when all is well.
 void draw_failure(PanelContext& context, const Rect& view);
+/// Says what the colours of the view mean; nothing where they are those of the fabric.
+/// `strain_range`: see Frame.
+void draw_legend(PanelContext& context, const Rect& view, double strain_range);
 /// Draws the table of keys over the middle of the view.
 void draw_help(PanelContext& context, const Rect& view);
 
