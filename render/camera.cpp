@@ -48,11 +48,23 @@ Vec3d Camera::eye() const { return target_ - distance_ * forward(); }
 
 double Camera::half_height() const { return std::tan(fov_ * kPi / 360); }
 
-void Camera::orbit(double dx, double dy, int height) {
+void Camera::orbit(double dx, double dy, int height, double floor) {
   const double turn = kPi / std::max(1, height);
   yaw_ = std::remainder(yaw_ - turn * dx, 2 * kPi);
-  pitch_ = std::clamp(pitch_ + turn * dy, -kSteepest, kSteepest);
+
+  // A target below the floor is looked at from straight above at most.
+  const double sine = (floor - target_.y) / distance_;
+  const double lowest = std::clamp(std::asin(std::clamp(sine, -1., 1.)), -kSteepest, kSteepest);
+  pitch_ = std::clamp(pitch_ + turn * dy, lowest, kSteepest);
 }
+
+void Camera::look_along(Vec3d direction) {
+  CameraPose turned = pose();
+  turned.eye = target_ - distance_ * normalized(direction);
+  *this = Camera(turned);
+}
+
+void Camera::lift_above(double floor) { target_.y += std::max(0., floor - eye().y); }
 
 void Camera::pan(double dx, double dy, int height) {
   const double pixel = pixel_size(distance_, height);

@@ -38,8 +38,12 @@ class Camera {
   double half_height() const;
 
   /// Turns around the target, for a drag of the pointer in pixels on a picture of `height` pixels.
-  /// A drag over the whole height is half a turn.
-  void orbit(double dx, double dy, int height);
+  /// A drag over the whole height is half a turn. It ends where the eye would go below `floor` [m].
+  void orbit(double dx, double dy, int height, double floor);
+  /// Looks at the target along a direction, from the same distance.
+  void look_along(Vec3d direction);
+  /// Lifts eye and target by as much as the eye is below `floor` [m].
+  void lift_above(double floor);
   /// Moves eye and target so that the target's plane follows the pointer.
   void pan(double dx, double dy, int height);
   /// Multiplies the distance to the target by `factor`.

@@ -322,6 +322,8 @@ void Renderer::draw(const Frame& frame, const Camera& camera, int width, int hei
   check_gl("Renderer::draw");
 }
 
+double Renderer::floor() const { return parts_->ground; }
+
 Image Renderer::picture(const Frame& frame, const Camera& camera, int width, int height) {
   parts_->bytes.resize(width, height);
   draw(frame, camera, width, height, parts_->bytes.framebuffer());

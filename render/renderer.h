@@ -66,6 +66,9 @@ class Renderer {
   void draw(const Frame& frame, const Camera& camera, int width, int height,
             unsigned target_framebuffer);
 
+  /// Height of the floor in the last picture [m].
+  double floor() const;
+
   /// Draws into an image.
   Image picture(const Frame& frame, const Camera& camera, int width, int height);
 

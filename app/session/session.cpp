@@ -239,7 +239,7 @@ void Session::handle(const Save& save) {
     note("Session saved to " + save.path + " (" + std::to_string(recording_.steps.size()) +
          " steps). Run it again with: icloth replay " + save.path);
   } catch (const std::exception& error) {
-    note(std::string("The session was not saved: ") + error.what());
+    note(std::string("The session was not saved: ") + error.what(), true);
   }
 }
 
@@ -249,7 +249,7 @@ void Session::handle(const Change& change) {
   try {
     set_parameter(wanted_parameters_, *info, change.value);
   } catch (const std::exception& error) {
-    note(error.what());
+    note(error.what(), true);
   }
 }
 
@@ -404,8 +404,9 @@ void Session::fail(const std::string& sentence) {
   failure_ = sentence;
 }
 
-void Session::note(const std::string& text) {
+void Session::note(const std::string& text, bool bad) {
   note_ = text;
+  note_is_bad_ = bad;
   ++notes_;
 }
 
@@ -460,6 +461,7 @@ void Session::publish(bool always) {
   state.failure = failure_;
   state.notes = notes_;
   state.note = note_;
+  state.note_is_bad = note_is_bad_;
   published_.publish();
 }
 

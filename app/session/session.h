@@ -56,6 +56,7 @@ struct PublishedState {
   std::string failure;         ///< plain sentence
   std::uint64_t notes = 0;     ///< grows with every new note
   std::string note;            ///< e.g. "session saved to …"
+  bool note_is_bad = false;    ///< it tells of something that went wrong
 };
 
 /// Owns the simulator. Every public member is called from one thread (the interface) and returns
@@ -134,7 +135,7 @@ class Session {
   void go_to(const HistoryEntry& entry);
   void fail(const std::string& sentence);
   bool may_pass_over() const { return failed_ && !refused() && !recording_.steps.empty(); }
-  void note(const std::string& text);
+  void note(const std::string& text, bool bad = false);
   void publish(bool always);
   void read_positions(PublishedState& state);
   template <class Work>
@@ -167,6 +168,7 @@ class Session {
   std::string failure_;
   std::uint64_t rewinds_ = 0, notes_ = 0;
   std::string note_;
+  bool note_is_bad_ = false;
   Clock::time_point due_{}, last_published_{};
   std::deque<Clock::time_point> step_ends_;  ///< of the last second
 

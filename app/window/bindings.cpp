@@ -29,7 +29,7 @@ constexpr Binding kTable[] = {
     {T::press, button::kLeft, kCtrl, H::any, U::cloth, A::pin_point, kHands, "Ctrl+click on cloth", "pin it where it is", "Ctrl+click: pin"},
     {T::key, 'X', kPlain, H::any, U::any, A::release_selected, kHands, "X", "release the grab, the selected handles, or the last one", "X: release"},
     {T::key, 'X', kShift, H::any, U::any, A::release_all, kHands, "Shift+X", "release all handles", ""},
-    {T::key, key::kEscape, kPlain, H::any, U::any, A::cancel, kHands, "Esc", "cancel the grab, then deselect, then close the help; it never quits", "Esc: cancel"},
+    {T::key, key::kEscape, kPlain, H::any, U::any, A::cancel, kHands, "Esc", "close the menu, else cancel the grab, deselect, close the help; it never quits", "Esc: cancel"},
 
     {T::press, button::kLeft, kPlain, H::any, U::other, A::orbit, kCamera, "Left drag beside the cloth", "orbit", "drag beside: orbit"},
     {T::press, button::kMiddle, kPlain, H::any, U::any, A::orbit, kCamera, "Middle drag", "orbit, also over cloth", ""},
@@ -38,9 +38,15 @@ constexpr Binding kTable[] = {
     {T::press, button::kMiddle, kCtrl, H::any, U::any, A::dolly_drag, kCamera, "Ctrl+middle drag", "dolly", ""},
     {T::wheel, 0, kPlain, H::free, U::any, A::dolly, kCamera, "Wheel", "dolly towards the pointer", "wheel: zoom"},
     {T::double_click, button::kLeft, kPlain, H::any, U::any, A::set_pivot, kCamera, "Double click", "orbit around this point from now on", ""},
-    {T::click, button::kRight, kPlain, H::free, U::any, A::menu, kCamera, "Right click", "menu: pin here, orbit around this, frame", ""},
+    {T::click, button::kRight, kPlain, H::free, U::any, A::menu, kCamera, "Right click", "menu: pin here, orbit around this, cameras", ""},
     {T::key, 'F', kPlain, H::any, U::any, A::frame_selection, kCamera, "F", "frame the selected handles, or the cloth", ""},
     {T::key, key::kHome, kPlain, H::any, U::any, A::frame_all, kCamera, "Home", "frame everything", ""},
+    {T::key, key::kHome, kShift, H::any, U::any, A::scene_camera, kCamera, "Shift+Home", "the scene's own camera; again: its next one", ""},
+    {T::key, key::kF5, kPlain, H::any, U::any, A::look_from_front, kCamera, "F5 to F9", "frame everything from the front, the back, the left, the right, the top", ""},
+    {T::key, key::kF5 + 1, kPlain, H::any, U::any, A::look_from_back, kCamera, "", "", ""},
+    {T::key, key::kF5 + 2, kPlain, H::any, U::any, A::look_from_left, kCamera, "", "", ""},
+    {T::key, key::kF5 + 3, kPlain, H::any, U::any, A::look_from_right, kCamera, "", "", ""},
+    {T::key, key::kF9, kPlain, H::any, U::any, A::look_from_top, kCamera, "", "", ""},
     {T::key, 'C', kCtrl, H::any, U::any, A::copy_camera, kCamera, "Ctrl+C, Ctrl+V", "copy and paste the camera as JSON", ""},
     {T::key, 'V', kCtrl, H::any, U::any, A::paste_camera, kCamera, "", "", ""},
 
@@ -85,6 +91,14 @@ Action find_action(Trigger trigger, int code, const InputState& state) {
   return Action::none;
 }
 
+bool text_field_takes(int code, int modifiers) {
+  if (code >= key::kF1 && code <= key::kF25) return false;
+  constexpr std::string_view kOfTheField = "ACVXYZ";
+  const bool letter = code >= 'A' && code <= 'Z';
+  return !letter || (modifiers & modifier::kControl) == 0 ||
+         kOfTheField.find(static_cast<char>(code)) != std::string_view::npos;
+}
+
 std::string hint_line(bool hand_holds) {
   std::string line;
   for (const Binding& row : kTable) {
@@ -110,7 +124,10 @@ std::string bindings_markdown() {
   std::string text =
       "# Keys and mouse\n\n"
       "This page is printed by the program from the table that the window works with\n"
-      "(`icloth info --keys`); a test keeps the two equal.\n";
+      "(`icloth info --keys`); a test keeps the two equal. While a number is being typed its\n"
+      "field takes the keys, except for F1 to F12 and Ctrl with a letter; Ctrl+A, C, V, X, Y and "
+      "Z\n"
+      "are those of the field.\n";
 
   // Each group has a heading and a table, in the order of the rows.
   std::string_view group;

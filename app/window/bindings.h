@@ -10,8 +10,8 @@ namespace icloth {
 /// The codes are those of GLFW, so that its events need no translation (checked in the window).
 namespace key {
 inline constexpr int kSpace = 32, kPeriod = 46, kEscape = 256, kEnter = 257, kTab = 258,
-                     kRight = 262, kLeft = 263, kHome = 268, kF1 = 290, kF11 = 300, kF12 = 301,
-                     kKeypadEnter = 335;
+                     kRight = 262, kLeft = 263, kHome = 268, kF1 = 290, kF5 = 294, kF9 = 298,
+                     kF11 = 300, kF12 = 301, kF25 = 314, kKeypadEnter = 335;
 }  // namespace key
 namespace modifier {
 inline constexpr int kNone = 0, kShift = 1, kControl = 2;
@@ -27,7 +27,8 @@ enum class Action {
   grab, grab_handle, add_handle, pin_point, unpin, park, cancel, release_selected, release_all,
   grab_depth, grab_radius, grab_stiffness,
   // camera
-  orbit, pan, dolly_drag, dolly, set_pivot, frame_selection, frame_all, menu, copy_camera,
+  orbit, pan, dolly_drag, dolly, set_pivot, frame_selection, frame_all, look_from_front,
+  look_from_back, look_from_left, look_from_right, look_from_top, scene_camera, menu, copy_camera,
   paste_camera,
   // simulation
   play_pause, hold_bodies, step, step_back, pass_over, reset, undo, redo, save_session,
@@ -69,6 +70,10 @@ struct InputState {
 };
 /// The action of an input, Action::none where no row fits.
 Action find_action(Trigger trigger, int code, const InputState& state);
+
+/// Whether a text field that is being typed into takes this key. It leaves function keys and
+/// Ctrl+letter, except those of the clipboard and of its own undo, to the table.
+bool text_field_takes(int code, int modifiers);
 
 /// The hints for the present actions: "Left drag grab · P park · …".
 std::string hint_line(bool hand_holds);

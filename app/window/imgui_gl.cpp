@@ -2,6 +2,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <cstddef>
 
@@ -96,6 +97,10 @@ bool Ui::wants_text() const { return ImGui::GetIO().WantTextInput; }
 
 bool Ui::popup_open() const {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+void Ui::close_popups() {
+  if (popup_open()) ImGui::ClosePopupToLevel(0, true);
 }
 
 }  // namespace icloth

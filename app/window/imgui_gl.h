@@ -28,6 +28,7 @@ class Ui {
   float scale() const { return scale_; }  ///< of all sizes
   bool wants_text() const;                ///< a text field has the keyboard
   bool popup_open() const;                ///< a click anywhere belongs to the popup
+  void close_popups();
 
  private:
   UiPainter painter_;

@@ -5,10 +5,15 @@
 
 #include "render/ui_painter.h"
 #include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 
 std::string free_name(const std::string& folder, const char* stem, const char* extension) {
+  std::error_code failed;
+  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+  if (failed)
+    throw InputError(shown_path(folder) + ": the folder cannot be made (" + failed.message() + ")");
   for (int k = 1;; ++k) {
     char number[24];
     std::snprintf(number, sizeof number, "_%04d", k);
@@ -19,8 +24,8 @@ std::string free_name(const std::string& folder, const char* stem, const char* e
   }
 }
 
-std::string save_screenshot(const Window& window, Ui& ui, const Target* picture, float left,
-                            float high, const std::string& folder) {
+SaveResult save_screenshot(const Window& window, Ui& ui, const Target* picture, float left,
+                           float high, const std::string& folder) {
   const int width = window.framebuffer_width(), height = window.framebuffer_height();
   Target target(Target::Kind::bytes);
   target.resize(width, height);
@@ -33,12 +38,12 @@ std::string save_screenshot(const Window& window, Ui& ui, const Target* picture,
                  static_cast<int>(high * factor));
   ui.paint(width, height, target.framebuffer());
 
-  const std::string path = free_name(folder, "icloth", ".png");
   try {
+    const std::string path = free_name(folder, "icloth", ".png");
     write_png(path, read_picture(target));
-    return "Picture saved to " + path;
+    return {"Picture saved to " + path, false};
   } catch (const InputError& error) {
-    return error.what();
+    return {std::string("The picture was not saved: ") + error.what(), true};
   }
 }
 

@@ -124,7 +124,7 @@ void StartScreen::handle(const std::vector<WindowEvent>& events) {
     } else if (event.kind == Kind::release) {
       orbits_ = false;
     } else if (event.kind == Kind::move && orbits_) {
-      camera_.orbit(event.x - x_, event.y - y_, window_.height());
+      camera_.orbit(event.x - x_, event.y - y_, window_.height(), renderer_->floor());
       dirty_ = camera_moved_ = true;
     } else if (event.kind == Kind::wheel && has_camera_ && !is_over_panel) {
       camera_.dolly(std::pow(kDollyPerNotch, event.amount));

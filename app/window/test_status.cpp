@@ -27,6 +27,7 @@ void TestStatusFile::write(const TestStatus& s) const {
       "\"playing\": %s, \"failed\": %s, \"panels\": %s, ",
       s.step, s.time, s.penetrations, s.max_speed, s.ui_fps, s.steps_per_second, s.handles,
       s.parked, s.notes, word(s.playing), word(s.failed), word(s.panels));
+  std::fprintf(file, "\"eye\": [%.9g, %.9g, %.9g], ", s.eye.x, s.eye.y, s.eye.z);
   std::fprintf(file,
                "\"view\": [%.0f, %.0f, %.0f, %.0f], \"mean\": [%.9g, %.9g, %.9g], "
                "\"cloth_visible\": %s, \"cloth_pixel\": [%.0f, %.0f]}\n",

@@ -23,6 +23,7 @@ struct TestStatus {
   std::string garments;  ///< in one line; empty: none
   bool playing = false, failed = false, panels = true;
   std::array<float, 4> view{};  ///< left, top, width, height of the 3D picture [logical pixels]
+  Vec3d eye;                    ///< of the camera [m]
   Vec3d mean;                   ///< of the cloth's vertices [m]
   bool cloth_visible = false;
   double cloth_x = 0, cloth_y = 0;  ///< a point of the window where the cloth can be grabbed

@@ -157,7 +157,7 @@ void Viewer::take_state() {
   // News are numbered, so that each of them is shown once.
   if (state.notes != seen_notes_) {
     seen_notes_ = state.notes;
-    tell(state.note);
+    state.note_is_bad ? complain(state.note) : tell(state.note);
   }
 
   if (state.failed != seen_failure_) {
@@ -274,9 +274,11 @@ void Viewer::draw_scene() {
 void Viewer::show_frame() {
   const int width = window_.framebuffer_width(), height = window_.framebuffer_height();
   const double factor = static_cast<double>(width) / window_.width();
-  if (want_screenshot_)
-    tell(save_screenshot(window_, ui_, &picture_, view_.x, view_.height,
-                         options_.screenshot_folder));
+  if (want_screenshot_) {
+    const SaveResult saved =
+        save_screenshot(window_, ui_, &picture_, view_.x, view_.height, options_.screenshot_folder);
+    saved.failed ? complain(saved.sentence) : tell(saved.sentence);
+  }
   want_screenshot_ = false;
   show_picture(picture_, 0, height, static_cast<int>(view_.x * factor), 0,
                static_cast<int>(view_.width * factor), static_cast<int>(view_.height * factor));
@@ -334,7 +336,13 @@ std::vector<Index> Viewer::failing_faces() const {
 
 void Viewer::tell(const std::string& note) {
   note_ = note;
+  note_is_bad_ = false;
   note_end_ = window_.seconds() + kNoteSeconds;
+}
+
+void Viewer::complain(const std::string& note) {
+  tell(note);
+  note_is_bad_ = true;
 }
 
 /// The texts of the status bar.
@@ -347,6 +355,7 @@ StatusTexts Viewer::status_texts() const {
   texts.upload_path = renderer_.upload_path();
   texts.ui_fps = static_cast<double>(frame_times_.size());
   if (window_.seconds() < note_end_) texts.note = note_;
+  texts.note_is_bad = note_is_bad_;
   return texts;
 }
 
@@ -406,6 +415,7 @@ TestStatus Viewer::test_status() const {
   if (!garments_.empty()) status.garments = garment_text(total(garments_));
   status.notes = static_cast<int>(origin_.notes.size());
   status.panels = state_.panels;
+  status.eye = camera_.eye();
 
   // Tests that drag the cloth need to know where it is on the screen.
   status.view = {view_.x, view_.y, view_.width, view_.height};

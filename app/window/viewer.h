@@ -78,6 +78,9 @@ class Viewer {
   void frame_box(const std::vector<Vec3d>& points);
   void frame_selection();
   void look_at_failure();
+  void choose_camera(std::size_t number);
+  void save_session();
+  void draw_camera_menu();
   void draw_menu();
 
   // Positions on the window, and what lies there.
@@ -93,6 +96,7 @@ class Viewer {
   void update_hover();
 
   void tell(const std::string& note);
+  void complain(const std::string& note);  ///< the same, of what went wrong
   std::optional<Vec3d> graspable_point() const;
   StatusTexts status_texts() const;
   TestStatus test_status() const;
@@ -120,6 +124,7 @@ class Viewer {
   StageHistory stages_;
   Drag drag_;
   Camera camera_;
+  std::size_t next_camera_ = 0;  ///< of the scene, scene_camera
   UiState state_;
   TestStatusFile test_file_;
 
@@ -141,6 +146,7 @@ class Viewer {
   bool seen_failure_ = false;
   std::vector<Index> marked_faces_;
   std::string note_;
+  bool note_is_bad_ = false;
   double note_end_ = 0, last_status_ = -1;
   std::deque<double> frame_times_;  ///< of the last second
 };

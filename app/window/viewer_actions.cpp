@@ -1,17 +1,39 @@
 // The effects of the actions in the table of bindings.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "app/common/camera_json.h"
 #include "app/window/screenshot.h"
 #include "app/window/viewer.h"
 #include "sim/files/box.h"
+#include "sim/files/error.h"
+#include "sim/files/text.h"
 
 namespace icloth {
 
 namespace {
 
 constexpr double kDollyPerNotch = 0.88;
+
+/// The direction of an action that looks at everything from one side; none for others.
+std::optional<Vec3d> direction_of(Action action) {
+  switch (action) {
+    case Action::look_from_front:
+      return Vec3d{0, 0, -1};
+    case Action::look_from_back:
+      return Vec3d{0, 0, 1};
+    case Action::look_from_left:
+      return Vec3d{1, 0, 0};
+    case Action::look_from_right:
+      return Vec3d{-1, 0, 0};
+    case Action::look_from_top:
+      return Vec3d{0, -1, 0};
+    default:
+      return std::nullopt;
+  }
+}
 
 Vec3d picked_point(const Pick& pick) { return pick.reachable() ? pick.point : pick.obstacle_point; }
 
@@ -118,6 +140,9 @@ bool Viewer::act_on_hands(Action action, double amount) {
 
 /// Carries out an action of the camera; false when it is none.
 bool Viewer::act_on_camera(Action action, double amount) {
+  const std::optional<Vec3d> side = direction_of(action);
+  if (side) camera_.look_along(*side);
+  if (side) action = Action::frame_all;
   switch (action) {
     // A gesture moves the camera until its button goes up.
     case Action::orbit:
@@ -160,6 +185,15 @@ bool Viewer::act_on_camera(Action action, double amount) {
       break;
     }
 
+    // The cameras of the scene follow each other.
+    case Action::scene_camera:
+      if (scene_->cameras.empty()) {
+        tell("The scene has no camera of its own.");
+      } else {
+        choose_camera(next_camera_);
+      }
+      break;
+
     case Action::menu:
       open_menu_ = true;
       break;
@@ -180,9 +214,18 @@ bool Viewer::act_on_camera(Action action, double amount) {
       return false;
   }
 
-  // A grab in the hand stays in space while the camera moves.
+  // It stays above the floor, and a grab in the hand stays in space while the camera moves.
+  camera_.lift_above(renderer_.floor());
   drag_.follow_camera(cursor_ray());
   return true;
+}
+
+/// Looks through a camera of the scene.
+void Viewer::choose_camera(std::size_t number) {
+  const CameraPose& pose = scene_->cameras[number];
+  camera_ = Camera(pose);
+  next_camera_ = (number + 1) % scene_->cameras.size();
+  tell("Camera " + in_quotes(pose.name) + " of the scene");
 }
 
 /// Carries out an action of the simulation; false when it is none.
@@ -219,12 +262,20 @@ bool Viewer::act_on_session(Action action) {
       return true;
 
     case Action::save_session:
-      session_->save(options_.record_file.empty()
-                         ? free_name(options_.screenshot_folder, "session", ".json")
-                         : options_.record_file);
+      save_session();
       return true;
     default:
       return false;
+  }
+}
+
+/// Saves the recording where the options say, or beside the screenshots.
+void Viewer::save_session() {
+  if (!options_.record_file.empty()) return session_->save(options_.record_file);
+  try {
+    session_->save(free_name(options_.screenshot_folder, "session", ".json"));
+  } catch (const InputError& error) {
+    complain(error.what());
   }
 }
 
@@ -280,6 +331,27 @@ void Viewer::look_at_failure() {
   dirty_ = true;
 }
 
+/// Draws the cameras that can be chosen: those of the scene, and one from each side.
+void Viewer::draw_camera_menu() {
+  if (!ImGui::BeginMenu("Cameras")) return;
+  for (std::size_t k = 0; k < scene_->cameras.size(); ++k) {
+    const std::string label = scene_->cameras[k].name + "##" + std::to_string(k);
+    if (!ImGui::MenuItem(label.c_str(), k == next_camera_ ? "Shift+Home" : nullptr)) continue;
+    choose_camera(k);
+    drag_.follow_camera(cursor_ray());
+  }
+  ImGui::Separator();
+  constexpr std::tuple<const char*, const char*, Action> kSides[] = {
+      {"From the front", "F5", Action::look_from_front},
+      {"From the back", "F6", Action::look_from_back},
+      {"From the left", "F7", Action::look_from_left},
+      {"From the right", "F8", Action::look_from_right},
+      {"From the top", "F9", Action::look_from_top}};
+  for (const auto& [label, key, action] : kSides)
+    if (ImGui::MenuItem(label, key)) act(action);
+  ImGui::EndMenu();
+}
+
 /// Draws the menu of a right click, which is about the point under it.
 void Viewer::draw_menu() {
   if (open_menu_) ImGui::OpenPopup("##menu");
@@ -297,6 +369,7 @@ void Viewer::draw_menu() {
   }
   if (ImGui::MenuItem("Frame the cloth", "F")) act(Action::frame_selection);
   if (ImGui::MenuItem("Frame everything", "Home")) act(Action::frame_all);
+  draw_camera_menu();
   if (ImGui::MenuItem("Release all handles", "Shift+X", false, !drag_.handles().empty())) {
     drag_.release_all();
   }

@@ -97,9 +97,13 @@ void Viewer::handle(const WindowEvent& event) {
       pointer_inside_ = false;
       break;
 
-    // A text field takes the keys that it needs.
+    // A text field takes the keys that it needs, and Esc closes what is open before it does more.
     case WindowEvent::Kind::key:
-      if (ui_.wants_text()) break;
+      if (ui_.wants_text() && text_field_takes(event.code, event.modifiers)) break;
+      if (event.code == key::kEscape && ui_.popup_open()) {
+        ui_.close_popups();
+        break;
+      }
       act(find_action(Trigger::key, event.code, {event.modifiers, drag_.grabbing(), Under::other}));
       break;
   }
@@ -162,7 +166,7 @@ void Viewer::move(const WindowEvent& event) {
       if (drag_.grabbing()) drag_.move(cursor_ray());
       return;
     case Gesture::orbit:
-      camera_.orbit(dx, dy, height);
+      camera_.orbit(dx, dy, height, renderer_.floor());
       break;
     case Gesture::pan:
       camera_.pan(dx, dy, height);
@@ -171,6 +175,7 @@ void Viewer::move(const WindowEvent& event) {
       camera_.dolly(std::exp(2 * dy / height));
       break;
   }
+  camera_.lift_above(renderer_.floor());
 
   // The camera moved under the hand.
   drag_.follow_camera(cursor_ray());

@@ -20,6 +20,7 @@ static_assert(key::kSpace == GLFW_KEY_SPACE && key::kPeriod == GLFW_KEY_PERIOD);
 static_assert(key::kEscape == GLFW_KEY_ESCAPE && key::kEnter == GLFW_KEY_ENTER);
 static_assert(key::kTab == GLFW_KEY_TAB && key::kRight == GLFW_KEY_RIGHT);
 static_assert(key::kLeft == GLFW_KEY_LEFT && key::kHome == GLFW_KEY_HOME);
+static_assert(key::kF5 == GLFW_KEY_F5 && key::kF9 == GLFW_KEY_F9 && key::kF25 == GLFW_KEY_F25);
 static_assert(key::kF1 == GLFW_KEY_F1 && key::kF11 == GLFW_KEY_F11 && key::kF12 == GLFW_KEY_F12);
 static_assert(key::kKeypadEnter == GLFW_KEY_KP_ENTER && 'A' == GLFW_KEY_A && '1' == GLFW_KEY_1);
 static_assert(modifier::kShift == GLFW_MOD_SHIFT && modifier::kControl == GLFW_MOD_CONTROL);

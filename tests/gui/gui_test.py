@@ -186,6 +186,36 @@ def check_keys(window):
     assert window.process.poll() is None, "Esc must not quit"
 
 
+def offset(status):
+    """From the middle of the cloth to the eye of the camera [m]."""
+    return [e - m for e, m in zip(status["eye"], status["mean"])]
+
+
+def check_cameras(window):
+    first = window.next_status()["eye"]
+    for name, axis, sign in (("F5", 2, 1), ("F6", 2, -1), ("F7", 0, -1), ("F8", 0, 1), ("F9", 1, 1)):
+        window.key(name)
+        window.wait(lambda s: offset(s)[axis] * sign > 0.8 * sum(x * x for x in offset(s)) ** 0.5,
+                    f"{name} looks from its side")
+    window.key("shift+Home")
+    window.wait(lambda s: max(abs(a - b) for a, b in zip(s["eye"], first)) < 1e-6,
+                "Shift+Home is the camera of the scene")
+
+    # A drag beside the cloth that would go below the floor ends above it.
+    status = window.next_status()
+    left, top, width, height = status["view"]
+    start = (left + 20, top + height - 20)
+    window.xdotool("mousemove", *start)
+    window.xdotool("mousedown", 1)
+    for k in range(1, 9):
+        window.xdotool("mousemove", start[0], start[1] - 60 * k)
+        time.sleep(0.05)
+    window.xdotool("mouseup", 1)
+    window.wait(lambda s: s["eye"][1] < first[1] - 0.1, "the drag lowers the eye")
+    assert window.next_status(2)["eye"][1] > -1e-3, "the eye is below the floor"
+    window.key("shift+Home")
+
+
 def check_end(window, program):
     window.key("ctrl+q")
     code = window.process.wait(60)
@@ -228,6 +258,7 @@ def main():
         window.wait_until_up()
         check_drag(window)
         check_keys(window)
+        check_cameras(window)
         check_end(window, program)
     finally:
         window.close()

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 480;
 constexpr double kAspect = 640.0 / 480.0;
+constexpr double kNoFloor = -1e9;
 
 CameraPose pose() { return {"test", {0.4, 1.9, 2.2}, {0.1, 1.2, -0.3}, {0, 1, 0}, 40}; }
 
@@ -72,19 +73,19 @@ TEST(Camera, RayGoesThroughThePointOfItsPixel) {
 TEST(Camera, OrbitKeepsTheDistance) {
   Camera camera(pose());
   const double before = camera.distance();
-  camera.orbit(37, -12, kHeight);
+  camera.orbit(37, -12, kHeight, kNoFloor);
   EXPECT_NEAR(norm(camera.eye() - camera.target()), before, 1e-12);
   EXPECT_GT(norm(camera.eye() - pose().eye), 0.1);
-  camera.orbit(0, 10000, kHeight);  // never over the pole
+  camera.orbit(0, 10000, kHeight, kNoFloor);  // never over the pole
   EXPECT_LT(camera.forward().y, -0.99);
   EXPECT_GT(camera.up().y, 0);
-  camera.orbit(0, -20000, kHeight);
+  camera.orbit(0, -20000, kHeight, kNoFloor);
   EXPECT_GT(camera.forward().y, 0.99);
 }
 
 TEST(Camera, OrbitOverTheWholeHeightIsHalfATurn) {
   Camera camera(CameraPose{"", {0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 35});
-  camera.orbit(kHeight, 0, kHeight);
+  camera.orbit(kHeight, 0, kHeight, kNoFloor);
   expect_near(camera.eye(), {0, 0, -2}, 1e-9);
 }
 
@@ -140,6 +141,37 @@ TEST(Camera, EyeOnTheTargetIsMovedAway) {
   const Camera camera(CameraPose{"", {1, 1, 1}, {1, 1, 1}, {0, 1, 0}, 35});
   EXPECT_GT(camera.distance(), 0);
   EXPECT_TRUE(std::isfinite(camera.ray(0, 0, kWidth, kHeight).direction.x));
+}
+
+TEST(Camera, StaysAboveTheFloorWhileItOrbits) {
+  Camera camera(pose());
+  camera.orbit(30, -10000, kHeight, 0.25);
+  EXPECT_NEAR(camera.eye().y, 0.25, 1e-9);
+  expect_near(camera.target(), pose().target, 0);
+
+  // A target below the floor is seen from above.
+  Camera above(pose());
+  above.orbit(0, -10000, kHeight, 50);
+  EXPECT_GT(above.eye().y, above.target().y + 0.99 * above.distance());
+}
+
+TEST(Camera, IsLiftedAboveTheFloorWithItsTarget) {
+  Camera camera(pose());
+  camera.lift_above(1);
+  expect_near(camera.eye(), pose().eye, 1e-12);
+  camera.lift_above(2.5);
+  expect_near(camera.eye(), pose().eye + Vec3d{0, 0.6, 0}, 1e-12);
+  expect_near(camera.target(), pose().target + Vec3d{0, 0.6, 0}, 1e-12);
+}
+
+TEST(Camera, LooksAlongADirectionFromItsDistance) {
+  Camera camera(pose());
+  const double distance = camera.distance();
+  camera.look_along({2, 0, 0});
+  expect_near(camera.eye(), pose().target - Vec3d{distance, 0, 0}, 1e-9);
+  expect_near(camera.target(), pose().target, 0);
+  camera.look_along({0, -1, 0});
+  EXPECT_GT(camera.eye().y, camera.target().y + 0.99 * distance);
 }
 
 }  // namespace

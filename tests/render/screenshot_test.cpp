@@ -80,7 +80,7 @@ TEST_F(Screenshot, FabricInTheStudio) {
   renderer_->set_quality(Quality::interactive);
   expect_other(picture(camera), "drape_still");
   renderer_->set_quality(Quality::draft);
-  camera.orbit(1, 0, kHeight);
+  camera.orbit(1, 0, kHeight, 0);
   expect_other(picture(camera), "drape_still");
 }
 

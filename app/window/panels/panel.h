@@ -64,6 +64,7 @@ struct StatusTexts {
   std::string upload_path;  ///< "host copy (built without CUDA)"
   double ui_fps = 0;
   std::string note;  ///< last message, empty after a while
+  bool note_is_bad = false;
 };
 
 inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1

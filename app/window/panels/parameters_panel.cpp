@@ -1,5 +1,7 @@
 // The panel of parameters. Its sliders are made from the table of parameters, which gives unit,
 // range, scale and tooltips.
+#include <imgui_internal.h>
+
 #include <cstdio>
 #include <map>
 #include <string>
@@ -60,7 +62,7 @@ void explain(const ParameterInfo& info, const ParameterEdits& edits) {
     if (!info.only_with.empty())
       ImGui::TextDisabled("used only with %s", std::string(info.only_with).c_str());
     ImGui::TextDisabled("%s", shown("source: " + std::string(info.source)).c_str());
-    ImGui::TextDisabled("right click: reset; Ctrl+click: type a value");
+    ImGui::TextDisabled("right click: reset; Ctrl+click: type a value, Enter sets it");
   });
 }
 
@@ -143,9 +145,10 @@ void draw_row(const ParameterInfo& info, ParameterEdits& edits, bool& held) {
   }
   ImGui::EndDisabled();
 
-  // A slider that is held makes one change, however often it moves.
+  // A slider that is held makes one change, however often it moves. A number that is being typed
+  // passes through others: it counts when its field is left.
   if (ImGui::IsItemActivated()) held = false;
-  if (moved) {
+  if (moved && !ImGui::TempInputIsActive(ImGui::GetItemID())) {
     edits.set(info, value, held);
     held = true;
   }

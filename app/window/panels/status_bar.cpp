@@ -67,7 +67,8 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
   if (texts.note.empty()) {
     ImGui::TextDisabled("%s", hint_line(context.drag.grabbing()).c_str());
   } else {
-    ImGui::TextColored(vec4(colour::kAccent), "%s", texts.note.c_str());
+    const ImU32 tint = texts.note_is_bad ? colour::kBad : colour::kAccent;
+    ImGui::TextColored(vec4(tint), "%s", texts.note.c_str());
   }
 
   // The second line begins with the most important number.

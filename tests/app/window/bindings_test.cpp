@@ -54,6 +54,16 @@ TEST(Bindings, OnlyControlQQuits) {
   EXPECT_EQ(quits, 1);
 }
 
+TEST(Bindings, TextFieldsLeaveTheKeysThatTheyDoNotNeed) {
+  for (const int code : {key::kF1, key::kF5, key::kF12}) EXPECT_FALSE(text_field_takes(code, 0));
+  for (const char letter : {'S', 'Q'})
+    EXPECT_FALSE(text_field_takes(letter, modifier::kControl)) << letter;
+  for (const char letter : {'A', 'C', 'V', 'X', 'Y', 'Z'})
+    EXPECT_TRUE(text_field_takes(letter, modifier::kControl)) << letter;
+  for (const int code : {int{'S'}, int{'1'}, key::kSpace, key::kEscape, key::kLeft, key::kTab})
+    EXPECT_TRUE(text_field_takes(code, 0)) << code;
+}
+
 TEST(Bindings, NoRowIsHiddenByOneBeforeIt) {
   const auto table = binding_table();
   for (std::size_t i = 0; i < table.size(); ++i) {
