@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "app/common/machine.h"
 #include "sim/cuda_devices.h"
 #include "sim/files/error.h"
 
@@ -80,6 +81,10 @@ long step_count(const SimulationOptions& options, const Scene& scene) {
   if (options.steps >= 0) return options.steps;
   const double time = options.time >= 0 ? options.time : scene.duration;
   return std::lround(std::min(time / scene.parameters.step.time_step, double(kMostSteps)));
+}
+
+int solver_threads(const SimulationOptions& options) {
+  return options.threads > 0 ? options.threads : processor_threads();
 }
 
 std::string command_arguments(const SimulationOptions& options, Build build) {

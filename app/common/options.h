@@ -40,6 +40,9 @@ Build choose_build(const SimulationOptions& options);
 /// step.
 long step_count(const SimulationOptions& options, const Scene& scene);
 
+/// The threads of the CPU builds: those of --threads, else all that there are.
+int solver_threads(const SimulationOptions& options);
+
 /// The options as they would be typed, without the command: "scarf --device cpu --set mu=500".
 /// `build` replaces --device and --precision, so that the line repeats on other machines.
 std::string command_arguments(const SimulationOptions& options, Build build);

@@ -463,6 +463,7 @@ void Session::publish(bool always) {
   state.note = note_;
   state.note_is_bad = note_is_bad_;
   published_.publish();
+  if (options_.published) options_.published();
 }
 
 }  // namespace icloth

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -29,6 +30,8 @@ struct SessionOptions {
   bool real_time = true;                  ///< never faster than time_step per wall second
   std::vector<FileLayout> layouts;        ///< of the scene's files, for the names of vertices
   std::string refusal;                    ///< why nothing may run (bad start state); empty: may
+  /// Called on the solver's thread when a new state is there; null: nobody waits for it.
+  std::function<void()> published;
 };
 
 /// The state of the session as the interface thread sees it.

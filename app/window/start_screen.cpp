@@ -220,6 +220,7 @@ void StartScreen::write_status(const char* phase, int dressing_step) {
   last_status_ = now;
   TestStatus status;
   status.phase = phase;
+  status.clock = now;
   status.dressing_step = dressing_step;
   status.ui_fps = static_cast<double>(frame_times_.size());
   test_file_.write(status);

@@ -16,8 +16,9 @@ void TestStatusFile::write(const TestStatus& s) const {
   if (!file) return;
 
   // The line is JSON, written by hand as its values need no escaping.
-  std::fprintf(file, "{\"phase\": \"%s\", \"dressing_step\": %d, \"body_speed\": %.9g, ",
-               s.phase.c_str(), s.dressing_step, s.body_speed);
+  std::fprintf(file,
+               "{\"phase\": \"%s\", \"clock\": %.3f, \"dressing_step\": %d, \"body_speed\": %.9g, ",
+               s.phase.c_str(), s.clock, s.dressing_step, s.body_speed);
   std::fprintf(file, "\"garments\": \"%s\", ", s.garments.c_str());
   const auto word = [](bool b) { return b ? "true" : "false"; };
   std::fprintf(

@@ -11,6 +11,7 @@ namespace icloth {
 /// The numbers of the line.
 struct TestStatus {
   std::string phase = "running";  ///< "opening" while a scene is dressed, "choosing" before one
+  double clock = 0;               ///< of the window [s]
   int dressing_step = 0;
   long long step = 0;
   double time = 0;

@@ -8,7 +8,7 @@
 namespace icloth {
 
 struct ViewOptions {
-  SimulationOptions simulation;   ///< threads 0: all but the one that software rendering needs
+  SimulationOptions simulation;
   std::string record_file;        ///< the session is written here at the end; empty: only Ctrl+S
   std::string screenshot_folder;  ///< F12 writes here; empty: the current folder
   std::string vertices = "auto";  ///< upload path of vertices: auto or host

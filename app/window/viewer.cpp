@@ -39,6 +39,7 @@ std::unique_ptr<Session> make_session(const SimulationOptions& options, Build bu
   session.overrides = scene_overrides(options);
   session.layouts = origin.layouts;
   session.refusal = refusal;
+  session.published = [] { Window::wake(); };
   return std::make_unique<Session>(make_simulator(build, scene), session);
 }
 
@@ -57,12 +58,6 @@ std::vector<std::array<Index, 2>> stitched_vertices(const Scene& scene, const Wo
 
 }  // namespace
 
-int solver_threads(int asked, bool software) {
-  if (asked > 0) return asked;
-  const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return software ? std::max(1, all - 1) : all;
-}
-
 Viewer::Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
                std::shared_ptr<const Scene> scene, SceneOrigin origin)
     : window_(window),
@@ -79,7 +74,7 @@ Viewer::Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
       stitches_(stitched_vertices(*scene_, world_)),
       renderer_(world_, {.on_device = options.vertices != "host"}),
       software_(gl_is_software()),
-      threads_(solver_threads(options.simulation.threads, software_)),
+      threads_(solver_threads(options.simulation)),
       edits_(scene_->parameters) {
   window_.set_title("icloth - " + scene_->name);
 
@@ -105,19 +100,22 @@ std::optional<std::string> Viewer::run() {
 }
 
 void Viewer::frame() {
-  const std::vector<WindowEvent> events = window_.poll();
-
-  // A window that is not seen draws nothing.
-  if (window_.minimised()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    return;
-  }
+  const std::vector<WindowEvent> events = window_.poll(time_to_wait());
 
   // Newly published states come first, then input, so that hands act on what the user saw.
   take_state();
   for (const WindowEvent& event : events) handle(event);
   hand_over();
 
+  // A window that is not seen, or that shows all there is, draws nothing.
+  if (test_file_.wanted() && window_.seconds() - last_status_ >= kStatusSeconds) {
+    test_file_.write(test_status());
+    last_status_ = window_.seconds();
+  }
+  count_frames();
+  if (window_.minimised() || time_to_wait() > 0) return;
+  const double begin = window_.seconds();
+  shows_state_ = true;
   measure_garments();
 
   // The panels may change parameters, which reach the solver with the same frame.
@@ -128,16 +126,35 @@ void Viewer::frame() {
   hand_over();
   draw_scene();
   show_frame();
+  last_frame_ = window_.seconds();
+  frame_seconds_ = window_.last_swap() - begin;
 
-  // Frames are counted over the last second.
+  frame_times_.push_back(last_frame_);
+}
+
+/// Keeps the frames of the last second.
+void Viewer::count_frames() {
+  while (!frame_times_.empty() && window_.seconds() - frame_times_.front() > 1)
+    frame_times_.pop_front();
+}
+
+/// How long the next frame may wait for input [s]. While the user does something there is a frame
+/// as soon as possible. Otherwise it takes something new to show, and drawing on the processor
+/// leaves the solver most of the time.
+double Viewer::time_to_wait() const {
+  constexpr double kActive = 0.5, kRest = 0.25, kLongest = 1, kShortest = 0.1, kShare = 0.5;
   const double now = window_.seconds();
-  frame_times_.push_back(now);
-  while (now - frame_times_.front() > 1) frame_times_.pop_front();
+  if (window_.minimised()) return kRest;
+  if (now - window_.last_input() < kActive) return 0;
 
-  if (test_file_.wanted() && now - last_status_ >= kStatusSeconds) {
-    test_file_.write(test_status());
-    last_status_ = now;
-  }
+  // A step in progress counts its seconds, a text field has a cursor that blinks, and a message
+  // goes away.
+  const bool ages = session_->state().playing || ui_.wants_text() ||
+                    (last_frame_ < note_end_ && now >= note_end_);
+  const bool has_news = !shows_state_ || dirty_ || !sharp_ || (ages && now - last_frame_ > kActive);
+  if (!has_news) return kRest;
+  const double pause = software_ ? std::clamp(frame_seconds_ / kShare, kShortest, kLongest) : 0;
+  return std::clamp(last_frame_ + pause - now, 0., kRest);
 }
 
 /// Takes the newest published state, and notes what has changed with it.
@@ -146,6 +163,7 @@ void Viewer::take_state() {
   if (!session_->take()) return;
   const PublishedState& state = session_->state();
   dirty_ = hover_stale_ = true;
+  shows_state_ = false;
 
   // After a jump back in time the handles and the plots are those of that time.
   if (state.rewinds != seen_rewinds_) {
@@ -400,6 +418,7 @@ TestStatus Viewer::test_status() const {
 
   // Numbers of the run, of the window and of the hands.
   TestStatus status;
+  status.clock = window_.seconds();
   status.step = state.step;
   status.time = state.time;
   status.penetrations =

@@ -29,10 +29,6 @@
 
 namespace icloth {
 
-/// The number of threads of the solver. Software rendering needs a core for itself; a graphics card
-/// does not.
-int solver_threads(int asked, bool software);
-
 /// Owns the renderer and the session of one scene, and connects them with the window.
 class Viewer {
  public:
@@ -54,6 +50,8 @@ class Viewer {
 
   // One frame, in this order (viewer.cpp).
   void frame();
+  double time_to_wait() const;
+  void count_frames();
   void take_state();
   void measure_garments();
   void hand_over();
@@ -139,9 +137,11 @@ class Viewer {
   int menu_handle_ = 0;
   bool open_menu_ = false, want_screenshot_ = false;
   bool dirty_ = true, hover_stale_ = true;
-  double draw_seconds_ = 0, draw_end_ = 0;  ///< cost and end of the last drawing of the scene
-  double last_change_ = 0;                  ///< when the scene last had to be drawn anew
-  bool sharp_ = false;                      ///< the picture has the full resolution
+  double draw_seconds_ = 0, draw_end_ = 0;     ///< cost and end of the last drawing of the scene
+  double last_change_ = 0;                     ///< when the scene last had to be drawn anew
+  bool sharp_ = false;                         ///< the picture has the full resolution
+  bool shows_state_ = false;                   ///< the last frame is of the present state
+  double last_frame_ = 0, frame_seconds_ = 0;  ///< end and cost of the last frame
   std::uint64_t seen_rewinds_ = 0, seen_notes_ = 0;
   bool seen_failure_ = false;
   std::vector<Index> marked_faces_;

@@ -106,7 +106,7 @@ void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, t
 void Window::add(WindowEvent event) {
   event.x = x_;
   event.y = y_;
-  event.time = glfwGetTime();
+  event.time = last_input_ = glfwGetTime();
   events_.push_back(event);
 }
 
@@ -119,8 +119,12 @@ void Window::install_callbacks() {
     self(w).add({.kind = Kind::move, .modifiers = modifiers_now(w)});
   });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
+    self(w).last_input_ = glfwGetTime();
     if (!entered) self(w).add({.kind = Kind::leave});
   });
+
+  // What was covered by another window has to be shown again.
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).last_input_ = glfwGetTime(); });
 
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int code, int action, int modifiers) {
     self(w).add({.kind = action == GLFW_PRESS ? Kind::press : Kind::release,
@@ -133,20 +137,28 @@ void Window::install_callbacks() {
 
   // A key that is held repeats as presses do.
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int code, int, int action, int modifiers) {
+    self(w).last_input_ = glfwGetTime();
     if (action == GLFW_RELEASE) return;
     self(w).add({.kind = Kind::key, .code = code, .modifiers = modifiers & kModifiers});
   });
 }
 
-std::vector<WindowEvent> Window::poll() {
-  glfwPollEvents();
+std::vector<WindowEvent> Window::poll(double seconds) {
+  if (seconds > 0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
   update_size();
   return std::exchange(events_, {});
 }
 
+void Window::wake() { glfwPostEmptyEvent(); }
+
 void Window::update_size() {
+  const int wide = framebuffer_width_, high = framebuffer_height_;
   glfwGetWindowSize(window_, &width_, &height_);
   glfwGetFramebufferSize(window_, &framebuffer_width_, &framebuffer_height_);
+  if (framebuffer_width_ != wide || framebuffer_height_ != high) last_input_ = glfwGetTime();
 }
 
 bool Window::minimised() const {
@@ -163,7 +175,7 @@ void Window::hide() {
 /// clock does.
 void Window::show() {
   glfwSwapBuffers(window_);
-  const double now = glfwGetTime();
+  const double now = last_swap_ = glfwGetTime();
   if (now < next_frame_) {
     std::this_thread::sleep_for(std::chrono::duration<double>(next_frame_ - now));
   }

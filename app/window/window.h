@@ -37,8 +37,15 @@ class Window : public GlContext {
   void request_close();
   void hide();
   void set_title(const std::string& title);
-  /// Handles the events that arrived and returns them.
-  std::vector<WindowEvent> poll();
+  /// Handles the events that arrived and returns them; where there are none, waits for them, or for
+  /// a wake(), up to so many seconds.
+  std::vector<WindowEvent> poll(double seconds = 0);
+  /// Ends the wait of poll(). From any thread, while the window exists.
+  static void wake();
+  /// When the last frame was handed over, before any wait for the display's pace [s].
+  double last_swap() const { return last_swap_; }
+  /// When input of any kind arrived last, or the size changed [s].
+  double last_input() const { return last_input_; }
   /// Shows the frame, not more often than the display does.
   void show();
   void toggle_full_screen();
@@ -66,6 +73,7 @@ class Window : public GlContext {
   int width_ = 0, height_ = 0, framebuffer_width_ = 0, framebuffer_height_ = 0;
   int restore_[4] = {0, 0, 0, 0};                      ///< place and size before full screen
   double frame_interval_ = 1.0 / 60, next_frame_ = 0;  ///< [s]
+  double last_input_ = 0, last_swap_ = 0;              ///< [s]
 };
 
 }  // namespace icloth

@@ -47,7 +47,7 @@ class WindowProgram {
         window_("icloth", options.width, options.height),
         ui_(window_),
         screen_(window_, ui_, options.screenshot_folder) {
-    set_thread_count(solver_threads(options.simulation.threads, gl_is_software()));
+    set_thread_count(solver_threads(options.simulation));
   }
 
   /// Ends when the window is closed. Throws what opening the first scene throws; the others come

@@ -93,7 +93,9 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
     std::snprintf(text, sizeof text, "in a step for %.0f s", busy);
     item(text, colour::kChanged);
   } else {
-    std::snprintf(text, sizeof text, "%.1f steps/s", context.state.steps_per_second);
+    const double speed = context.state.steps_per_second;
+    std::snprintf(text, sizeof text, "%.1f steps/s, %.2g x real time", speed,
+                  speed * context.state.parameters.step.time_step);
     item(context.state.playing ? text : "paused",
          context.state.playing ? colour::kText : colour::kChanged);
   }
