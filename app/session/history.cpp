@@ -1,5 +1,7 @@
 #include "app/session/history.h"
 
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace icloth {
@@ -13,29 +15,45 @@ std::size_t size_of(const HistoryEntry& entry) {
 }  // namespace
 
 void History::push(HistoryEntry entry) {
-  bytes_ += size_of(entry);
-  entries_.push_back(std::move(entry));
-  while (bytes_ > limit_ && entries_.size() > 1) {
-    bytes_ -= size_of(entries_.front());
-    entries_.pop_front();
+  const std::size_t now = entry.recorded_steps, bytes = size_of(entry);
+  const auto [place, is_new] = entries_.try_emplace(now, std::move(entry));
+  if (!is_new) return;  // equal steps lead to equal states
+  bytes_ += bytes;
+  while (bytes_ > limit_) {
+    const auto victim = least_needed(now);
+    if (victim == entries_.end()) return;
+    bytes_ -= size_of(victim->second);
+    entries_.erase(victim);
   }
 }
 
-std::optional<HistoryEntry> History::rewind(std::size_t count) {
-  if (count == 0 || count > entries_.size()) return std::nullopt;
-  for (std::size_t k = 1; k < count; ++k) {
-    bytes_ -= size_of(entries_.back());
-    entries_.pop_back();
+/// The state without which the fewest steps have to be made again, in proportion to how far it is
+/// from the present one: gaps grow with the distance. The end: none may go.
+History::Entries::iterator History::least_needed(std::size_t now) {
+  auto least = entries_.end();
+  double least_share = 0;
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    const auto next = std::next(entry);
+    if (entry == entries_.begin() || next == entries_.end() || entry->first == now) continue;
+    const double gap = static_cast<double>(next->first - std::prev(entry)->first);
+    const double distance = std::fabs(static_cast<double>(entry->first) - static_cast<double>(now));
+    if (least != entries_.end() && gap / distance >= least_share) continue;
+    least = entry;
+    least_share = gap / distance;
   }
-  bytes_ -= size_of(entries_.back());
-  HistoryEntry entry = std::move(entries_.back());
-  entries_.pop_back();
-  return entry;
+  return least;
 }
 
-void History::clear() {
-  entries_.clear();
-  bytes_ = 0;
+const HistoryEntry* History::before(std::size_t steps) const {
+  const auto after = entries_.upper_bound(steps);
+  return after == entries_.begin() ? nullptr : &std::prev(after)->second;
+}
+
+void History::forget_after(std::size_t steps) { forget_all_from(entries_.upper_bound(steps)); }
+
+void History::forget_all_from(Entries::iterator first) {
+  for (auto entry = first; entry != entries_.end(); ++entry) bytes_ -= size_of(entry->second);
+  entries_.erase(first, entries_.end());
 }
 
 }  // namespace icloth

@@ -1,9 +1,9 @@
-// States to step back to, in bounded memory.
+// States of a run to go back to, in bounded memory: all of the newest ones, and fewer and fewer the
+// further they are away. The steps between two of them are made again.
 #pragma once
 
 #include <cstddef>
-#include <deque>
-#include <optional>
+#include <map>
 
 #include "sim/scene/input.h"
 #include "sim/simulator.h"
@@ -17,21 +17,30 @@ struct HistoryEntry {
   Parameters parameters;           ///< in force for the step before
 };
 
-/// The newest entries that fit into a number of bytes; at least one is kept.
+/// The states that fit into a number of bytes; the first and the newest one are always kept.
 class History {
  public:
   explicit History(std::size_t bytes) : limit_(bytes) {}
 
+  /// Adds the state in which the run is now.
   void push(HistoryEntry entry);
-  /// Takes the entry `count` back (1 is the newest) and forgets those after it; none: nullopt.
-  std::optional<HistoryEntry> rewind(std::size_t count);
-  void clear();
+  /// The newest state that is not after so many steps; null: none. Valid until a state is added or
+  /// forgotten.
+  const HistoryEntry* before(std::size_t steps) const;
+  /// Forgets the states after so many steps.
+  void forget_after(std::size_t steps);
+  void clear() { forget_all_from(entries_.begin()); }
 
   std::size_t size() const { return entries_.size(); }
   std::size_t bytes() const { return bytes_; }
 
  private:
-  std::deque<HistoryEntry> entries_;
+  using Entries = std::map<std::size_t, HistoryEntry>;  // by recorded_steps
+
+  void forget_all_from(Entries::iterator first);
+  Entries::iterator least_needed(std::size_t now);
+
+  Entries entries_;
   std::size_t limit_, bytes_ = 0;
 };
 

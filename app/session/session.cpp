@@ -98,6 +98,9 @@ void Session::play() { send(Command::play); }
 void Session::pause() { send(Command::pause); }
 void Session::step_once() { send(Command::step); }
 void Session::step_back(std::size_t count) { send(Back{count}); }
+void Session::go(std::size_t steps) { send(Go{steps}); }
+void Session::preview(std::size_t steps) { send(Preview{steps}); }
+void Session::return_to_left_run() { send(Command::left_run); }
 void Session::pass_over() { send(Command::pass_over); }
 void Session::reset() { send(Command::reset); }
 void Session::set_scripted(bool on) { send(Toggle{true, on}); }
@@ -162,7 +165,8 @@ void Session::run() {
 
     // Commands such as reset change the state without a step, and the window shows it at once.
     const bool idle = !playing_ && !single_;
-    if (!mail.empty() && idle) publish(true);
+    const bool shows_preview = !mail.empty() && std::holds_alternative<Preview>(mail.back());
+    if (!mail.empty() && idle && !shows_preview) publish(true);
     mail.clear();
 
     if (stopping_ || idle) continue;
@@ -201,8 +205,12 @@ void Session::handle(Command command) {
       pass_refused_step();
       break;
     case Command::reset:
-      go_to(start_);
+      if (const Run run = present_run(); !run.steps.empty()) left_ = {run.steps, 0};
       history_.clear();
+      travel(0, {});
+      break;
+    case Command::left_run:
+      change_runs();
       break;
     case Command::stop:
       stopping_ = true;
@@ -211,12 +219,30 @@ void Session::handle(Command command) {
 }
 
 void Session::handle(const Back& back) {
+  const std::size_t made = recording_.steps.size();
   playing_ = false;
-  if (const auto entry = history_.rewind(std::min(back.count, history_.size()))) {
-    go_to(*entry);
-  } else {
-    note("There is no older state to go back to.");
-  }
+  if (made == 0) return note("There is no older state to go back to.");
+  travel(made - std::min(back.count, made), present_run());
+}
+
+void Session::handle(const Go& go) { travel(go.steps, present_run()); }
+
+void Session::handle(const Preview& preview) {
+  playing_ = single_ = false;
+  const HistoryEntry* entry =
+      preview.steps == recording_.steps.size() ? nullptr : history_.before(preview.steps);
+  if (!entry) return publish(true);
+  PublishedState& state = published_.back();
+  fill(state);
+  state.step = entry->snapshot.step;
+  state.time = entry->snapshot.time;
+  state.positions.clear();
+  for (const Vec3d& p : entry->snapshot.x1) state.positions.push_back(convert<float>(p));
+  state.on_device.reset();
+  state.handles.clear();
+  state.preview = true;
+  published_.publish();
+  if (options_.published) options_.published();
 }
 
 void Session::handle(const Toggle& toggle) {
@@ -303,6 +329,7 @@ void Session::release_scripted_handles() {
 
 void Session::advance() {
   single_ = false;
+  leave_run();
   const Clock::time_point begin = Clock::now();
   Recording::Step step;
   const bool done = guarded([&] {
@@ -348,13 +375,16 @@ void Session::finish(const StepReport& report) {
   failed_ = !report.accepted;
   if (failed_) {
     playing_ = false;
-    const Scene& scene = simulator_->scene();
-    guarded([&] {
-      fail(failure_sentence(report, scene, ElementNames(scene, options_.layouts),
-                            is_too_close(*simulator_, report)));
-    });
+    guarded([&] { explain_refusal(); });
   }
   publish(!playing_);
+}
+
+/// Says why the newest step was refused.
+void Session::explain_refusal() {
+  const Scene& scene = simulator_->scene();
+  fail(failure_sentence(report_, scene, ElementNames(scene, options_.layouts),
+                        is_too_close(*simulator_, report_)));
 }
 
 /// A replay makes the step as well, meets the same refusal, and passes over it.
@@ -372,31 +402,101 @@ void Session::pass_refused_step() {
   note("The clock " + text + ".");
 }
 
-/// The recording is cut where the entry was taken, and the simulator becomes what it was there:
-/// parameters, state and hands. Parameters that the user has changed since are set again with the
-/// next step.
-void Session::go_to(const HistoryEntry& entry) {
+/// All that was recorded: the steps up to the present state, and those that were taken back.
+Session::Run Session::present_run() const {
+  Run run{recording_.steps, recording_.steps.size()};
+  run.steps.insert(run.steps.end(), ahead_.begin(), ahead_.end());
+  return run;
+}
+
+/// A new step after others were taken back leaves the run of those.
+void Session::leave_run() {
+  const std::size_t made = recording_.steps.size();
+  if (ahead_.empty()) return;
+  left_ = present_run();
+  ahead_.clear();
+  history_.forget_after(made);
+}
+
+void Session::change_runs() {
+  if (left_.steps.empty()) return note("There is no other run to go back to.");
+  Run present = present_run();
+  const Run other = std::move(left_);
+
+  // States beyond the steps that both share are those of the present run.
+  present.shared = other.shared;
+  left_ = std::move(present);
+  history_.forget_after(other.shared);
+  travel(other.steps.size(), other);
+}
+
+/// Makes the state after `target` steps of a run, from the newest one before it that is at hand.
+void Session::travel(std::size_t target, const Run& run) {
   playing_ = single_ = false;
+  target = std::min(target, run.steps.size());
+  const HistoryEntry* kept = history_.before(target);
+  const HistoryEntry& nearest = kept ? *kept : start_;
+  const std::size_t made = recording_.steps.size();
+  const bool is_on_the_way = made <= run.shared && made <= target && made >= nearest.recorded_steps;
+  if (!is_on_the_way) restore(HistoryEntry(nearest), run);
+
+  while (recording_.steps.size() < target && !has_mail())
+    make_again(run.steps[recording_.steps.size()]);
+  ahead_.assign(run.steps.begin() + static_cast<std::ptrdiff_t>(recording_.steps.size()),
+                run.steps.end());
+  settle();
+}
+
+/// The simulator becomes what it was: parameters, state and hands. Parameters that the user has
+/// changed since are set again with the next step.
+void Session::restore(const HistoryEntry& entry, const Run& run) {
   simulator_->set_parameters(entry.parameters);
   simulator_->restore(entry.snapshot);
-  recording_.steps.resize(entry.recorded_steps);
+  recording_.steps.assign(run.steps.begin(),
+                          run.steps.begin() + static_cast<std::ptrdiff_t>(entry.recorded_steps));
   recorded_parameters_ = entry.parameters;
 
+  // The report of the newest step does not fit the older state.
+  report_ = {};
+  report_.step = entry.snapshot.step;
+  report_.time = entry.snapshot.time;
+}
+
+/// Makes a recorded step once more; equal input gives equal bits.
+void Session::make_again(const Recording::Step& step) {
+  history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_});
+  for (const auto& [name, value] : step.parameters)
+    set_parameter(recorded_parameters_, *find_parameter(name), value);
+  if (!step.parameters.empty()) simulator_->set_parameters(recorded_parameters_);
+  step_begin_ = Clock::now().time_since_epoch().count();
+  report_ = simulator_->step(step.events);
+  step_begin_ = 0;
+  recording_.steps.push_back(step);
+  if (!report_.accepted && step.passed_over) {
+    simulator_->pass_over();
+    report_.accepted = true;
+  }
+  publish(false);
+}
+
+/// The hands of a state that was gone to, and what is to be said of it.
+void Session::settle() {
   // A scene's own grabs go on only where they are switched on now.
   pending_.clear();
   if (scripted_)
     start_script();
   else
     release_scripted_handles();
-
-  // The report of the newest step does not fit the older state.
-  report_ = {};
-  report_.step = entry.snapshot.step;
-  report_.time = entry.snapshot.time;
   step_ends_.clear();
   failed_ = refused();
   if (!failed_) failure_.clear();
+  if (!failed_ && !report_.accepted) explain_refusal();
   ++rewinds_;
+}
+
+bool Session::has_mail() {
+  const std::lock_guard lock(mutex_);
+  return !mailbox_.empty();
 }
 
 void Session::fail(const std::string& sentence) {
@@ -437,11 +537,18 @@ void Session::publish(bool always) {
   if (!always && now - last_published_ < kPublishInterval) return;
   last_published_ = now;
 
-  // The reader learns of the state and of how it came about.
   PublishedState& state = published_.back();
+  fill(state);
+  read_positions(state);
+  published_.publish();
+  if (options_.published) options_.published();
+}
+
+/// Writes what the reader learns besides the positions: the state, and how it came about.
+void Session::fill(PublishedState& state) const {
   state.step = simulator_->step_index();
   state.time = simulator_->time();
-  read_positions(state);
+  state.preview = false;
   state.rewinds = rewinds_;
   state.report = report_;
   state.parameters = wanted_parameters_;
@@ -454,7 +561,9 @@ void Session::publish(bool always) {
   const double span =
       count < 2 ? 0 : std::chrono::duration<double>(step_ends_.back() - step_ends_.front()).count();
   state.steps_per_second = playing_ && span > 0 ? static_cast<double>(count - 1) / span : 0;
-  state.history = history_.size();
+  state.history = recording_.steps.size();
+  state.ahead = ahead_.size();
+  state.left = left_.steps.size() - std::min(left_.steps.size(), left_.shared);
   state.history_bytes = history_.bytes();
   state.failed = failed_;
   state.may_pass_over = may_pass_over();
@@ -462,8 +571,6 @@ void Session::publish(bool always) {
   state.notes = notes_;
   state.note = note_;
   state.note_is_bad = note_is_bad_;
-  published_.publish();
-  if (options_.published) options_.published();
 }
 
 }  // namespace icloth

@@ -24,12 +24,12 @@
 namespace icloth {
 
 struct SessionOptions {
-  std::string scene;                      ///< as it is written into recordings
-  std::vector<std::string> overrides;     ///< --set arguments of the scene
-  std::size_t history_bytes = 64u << 20;  ///< memory for stepping back
-  bool real_time = true;                  ///< never faster than time_step per wall second
-  std::vector<FileLayout> layouts;        ///< of the scene's files, for the names of vertices
-  std::string refusal;                    ///< why nothing may run (bad start state); empty: may
+  std::string scene;                       ///< as it is written into recordings
+  std::vector<std::string> overrides;      ///< --set arguments of the scene
+  std::size_t history_bytes = 256u << 20;  ///< memory for stepping back
+  bool real_time = true;                   ///< never faster than time_step per wall second
+  std::vector<FileLayout> layouts;         ///< of the scene's files, for the names of vertices
+  std::string refusal;                     ///< why nothing may run (bad start state); empty: may
   /// Called on the solver's thread when a new state is there; null: nobody waits for it.
   std::function<void()> published;
 };
@@ -53,7 +53,10 @@ struct PublishedState {
   bool scripted = false, real_time = true;
   double steps_per_second = 0;
   std::size_t history = 0;  ///< steps that can be taken back
+  std::size_t ahead = 0;    ///< steps that were taken back and can be made again
+  std::size_t left = 0;     ///< steps of the run that was left last (Session::return_to_left_run)
   std::size_t history_bytes = 0;
+  bool preview = false;        ///< the positions are those of an older state (Session::preview)
   bool failed = false;         ///< the newest step was refused, or nothing may run
   bool may_pass_over = false;  ///< the newest step was refused, and the clock can go on over it
   std::string failure;         ///< plain sentence
@@ -75,6 +78,16 @@ class Session {
   void pause();
   void step_once();  ///< one step, then pause
   void step_back(std::size_t count = 1);
+  /// To the state after so many recorded steps, back, or forward along those that were taken back.
+  /// Where that state is not kept, the steps to it are made again; whatever is asked for meanwhile
+  /// ends that early.
+  void go(std::size_t steps);
+  /// Shows the positions of the newest kept state that is not after so many steps, until the next
+  /// state is published; the run stays where it is.
+  void preview(std::size_t steps);
+  /// Goes to the end of the run that was left last, when the cloth went on from an older state or
+  /// was reset. The present run becomes the one that was left.
+  void return_to_left_run();
   /// Lets the clock go on over the step that was just refused (Simulator::pass_over), as
   /// `--on-failure continue` does; says in a note what that did.
   void pass_over();
@@ -101,9 +114,15 @@ class Session {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Command { play, pause, step, pass_over, reset, stop };
+  enum class Command { play, pause, step, pass_over, reset, left_run, stop };
   struct Back {
     std::size_t count;
+  };
+  struct Go {
+    std::size_t steps;
+  };
+  struct Preview {
+    std::size_t steps;
   };
   struct Toggle {
     bool scripted;
@@ -116,7 +135,13 @@ class Session {
     std::string parameter;
     double value;
   };
-  using Mail = std::variant<Command, Back, Toggle, Save, Change, InputEvent>;
+  using Mail = std::variant<Command, Back, Go, Preview, Toggle, Save, Change, InputEvent>;
+
+  /// Input of a whole run, and how many of its first steps the recording has as well.
+  struct Run {
+    std::vector<Recording::Step> steps;
+    std::size_t shared = 0;
+  };
 
   void send(Mail mail);
 
@@ -125,6 +150,8 @@ class Session {
   void wait_for_mail(std::vector<Mail>& mail);
   void handle(Command command);
   void handle(const Back& back);
+  void handle(const Go& go);
+  void handle(const Preview& preview);
   void handle(const Toggle& toggle);
   void handle(const Save& save);
   void handle(const Change& change);
@@ -135,11 +162,20 @@ class Session {
   void start_script();
   void release_scripted_handles();
   void finish(const StepReport& report);
-  void go_to(const HistoryEntry& entry);
+  Run present_run() const;
+  void leave_run();
+  void change_runs();
+  void travel(std::size_t target, const Run& run);
+  void restore(const HistoryEntry& entry, const Run& run);
+  void make_again(const Recording::Step& step);
+  void settle();
+  bool has_mail();
+  void explain_refusal();
   void fail(const std::string& sentence);
   bool may_pass_over() const { return failed_ && !refused() && !recording_.steps.empty(); }
   void note(const std::string& text, bool bad = false);
   void publish(bool always);
+  void fill(PublishedState& state) const;
   void read_positions(PublishedState& state);
   template <class Work>
   bool guarded(const Work& work);
@@ -163,6 +199,8 @@ class Session {
   Parameters wanted_parameters_;    ///< for the next step
   Parameters recorded_parameters_;  ///< in force at the end of the recording
   Recording recording_;
+  std::vector<Recording::Step> ahead_;  ///< taken back, of the same run
+  Run left_;                            ///< that was left last
   HistoryEntry start_;
   History history_;
   StepReport report_;

@@ -55,6 +55,8 @@ constexpr Binding kTable[] = {
     {T::key, key::kRight, kPlain, H::any, U::any, A::step, kTime, "Right or .", "one step", ""},
     {T::key, key::kPeriod, kPlain, H::any, U::any, A::step, kTime, "", "", ""},
     {T::key, key::kLeft, kPlain, H::any, U::any, A::step_back, kTime, "Left", "one step back in the history", ""},
+    {T::key, key::kRight, kShift, H::any, U::any, A::step_forward, kTime, "Shift+Right", "one step forward again, as it was recorded", ""},
+    {T::key, key::kLeft, kShift, H::any, U::any, A::other_run, kTime, "Shift+Left", "the run that was left by going on from an older state or by a reset", ""},
     {T::key, 'O', kPlain, H::any, U::any, A::pass_over, kTime, "O", "go on over a refused step: the clock moves, the cloth rests where it is", ""},
     {T::key, 'R', kPlain, H::any, U::any, A::reset, kTime, "R", "reset to the start state; parameters stay", ""},
     {T::key, 'Z', kCtrl, H::any, U::any, A::undo, kTime, "Ctrl+Z, Ctrl+Shift+Z", "undo and redo changes of parameters", ""},

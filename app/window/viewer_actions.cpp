@@ -246,6 +246,12 @@ bool Viewer::act_on_session(Action action) {
     case Action::step_back:
       session_->step_back();
       return true;
+    case Action::step_forward:
+      session_->go(session_->state().history + 1);
+      return true;
+    case Action::other_run:
+      session_->return_to_left_run();
+      return true;
     case Action::pass_over:
       session_->pass_over();
       return true;

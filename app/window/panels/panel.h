@@ -32,7 +32,7 @@ struct UiState {
   bool panels = true, help = false;
   ViewMode view = ViewMode::shaded;
   std::int64_t chosen_step = -1;  ///< clicked in the stage plot, −1: the newest
-  int history_back = 0;           ///< while the history slider is held
+  int history_at = -1;            ///< step of the history slider while it is held, else −1
   bool slider_held = false;       ///< the active slider has moved before in this gesture
 
   bool show_failure = false;   ///< asked for: look at the offending faces

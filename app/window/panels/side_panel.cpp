@@ -21,33 +21,40 @@ void tooltip(const char* text) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
-/// Draws the slider of earlier states.
+/// Draws the slider of the steps that were made: the picture follows it, and letting go goes there.
 void draw_history(PanelContext& context) {
-  const int count = static_cast<int>(context.state.history);
-
-  int& back = context.ui.history_back;
+  const PublishedState& state = context.state;
+  const int made = static_cast<int>(state.history), all = made + static_cast<int>(state.ahead);
+  int& at = context.ui.history_at;
   char label[96];
-  if (back) {
-    std::snprintf(label, sizeof label, "%d of %d steps back", back, count);
-  } else {
-    std::snprintf(label, sizeof label, "history: %d steps", count);
-  }
+  if (at >= 0)
+    std::snprintf(label, sizeof label, "to step %d of %d", at, all);
+  else if (all > made)
+    std::snprintf(label, sizeof label, "step %d of %d", made, all);
+  else
+    std::snprintf(label, sizeof label, "history: %d steps", made);
 
-  // The right end is the present; the label tells how far back the slider is.
   ImGui::SetNextItemWidth(-1);
-  ImGui::BeginDisabled(count == 0);
-  int position = count - back;
-  if (ImGui::SliderInt("##history", &position, 0, std::max(count, 1), label)) {
-    back = count - position;
+  ImGui::BeginDisabled(all == 0);
+  int position = at >= 0 ? at : made;
+  if (ImGui::SliderInt("##history", &position, 0, std::max(all, 1), label)) {
+    at = position;
+    context.session.preview(static_cast<std::size_t>(at));
   }
-  tooltip("Drag to the left and let go: go back to an earlier state and on from there.");
+  if (!ImGui::IsItemActive())
+    tooltip("Drag to look at earlier states; let go to go there. Shift+Right goes forward again.");
 
-  // Letting go is the moment to go back.
-  if (ImGui::IsItemDeactivated()) {
-    if (back > 0) context.session.step_back(static_cast<std::size_t>(back));
-    back = 0;
+  if (ImGui::IsItemDeactivated() && at >= 0) {
+    context.session.go(static_cast<std::size_t>(at));
+    at = -1;
   }
   ImGui::EndDisabled();
+
+  // What was left by going on from an earlier state is not lost.
+  if (state.left == 0) return;
+  std::snprintf(label, sizeof label, "Other run (%d steps)###left", static_cast<int>(state.left));
+  if (ImGui::SmallButton(label)) context.session.return_to_left_run();
+  tooltip("Shift+Left: back to the run that was left, made again step by step");
 }
 
 /// The name of the scene, which opens the list of the others.

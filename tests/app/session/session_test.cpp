@@ -209,14 +209,106 @@ TEST(Session, ResetsAndKeepsTheParameters) {
   EXPECT_EQ(replay(recording), recording.final_hash);
 }
 
-TEST(Session, BoundsTheMemoryOfTheHistory) {
+/// Goes to a step and waits until the session is there.
+void go(Session& session, std::size_t steps) {
+  const std::uint64_t before = session.state().rewinds;
+  session.go(steps);
+  ASSERT_TRUE(wait_until(session, [&](const PublishedState& s) {
+    return s.rewinds > before && s.history == steps && !s.preview;
+  }));
+}
+
+/// Steps with a grab and a change of a parameter on the way; the positions after each of them.
+std::vector<std::vector<Vec3f>> eventful_run(Session& session, int steps) {
+  std::vector<std::vector<Vec3f>> seen{session.state().positions};
+  for (int k = 0; k < steps; ++k) {
+    if (k == 7) session.post(event(InputEvent::Kind::grab, 1, {0.2, 1.5, 0}));
+    if (k == 23) session.set("step.time_step", 0.005);
+    if (k == 31) session.post(event(InputEvent::Kind::release, 1, {}));
+    step(session);
+    seen.push_back(session.state().positions);
+  }
+  return seen;
+}
+
+TEST(Session, ReachesAllStatesInBoundedMemory) {
   SessionOptions options;
   options.history_bytes = 100'000;
   const auto session = make({.vertices = 300}, options);  // 14.4 kB a state
-  step(*session, 12);
+  const auto seen = eventful_run(*session, 60);
   EXPECT_LE(session->state().history_bytes, options.history_bytes);
-  EXPECT_GE(session->state().history, 4u);
-  EXPECT_LT(session->state().history, 7u);
+  EXPECT_EQ(session->state().history, 60u);
+
+  // Back and forth, the states are those that they were.
+  for (const std::size_t steps : {59u, 24u, 23u, 60u, 8u, 0u, 33u, 60u}) {
+    go(*session, steps);
+    EXPECT_TRUE(session->state().positions == seen[steps]) << steps;
+    EXPECT_EQ(session->state().ahead, 60 - steps);
+    EXPECT_LE(session->state().history_bytes, options.history_bytes);
+  }
+  session->stop();
+  EXPECT_EQ(session->recording().steps.size(), 60u);
+  EXPECT_EQ(replay(session->recording(), {.vertices = 300}), session->recording().final_hash);
+}
+
+TEST(Session, ShowsOlderStatesWithoutGoingThere) {
+  const auto session = make();
+  const auto seen = eventful_run(*session, 12);
+  session->preview(5);
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.preview; }));
+  EXPECT_TRUE(session->state().positions == seen[5]);
+  EXPECT_EQ(session->state().step, 5);
+  EXPECT_EQ(session->state().history, 12u);
+
+  // The present state is shown again at its own place, and the run goes on from it.
+  session->preview(12);
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return !s.preview; }));
+  EXPECT_TRUE(session->state().positions == seen[12]);
+  step(*session);
+  EXPECT_EQ(session->state().step, 13);
+}
+
+TEST(Session, ReturnsToTheRunThatWasLeft) {
+  const auto session = make();
+  const auto seen = eventful_run(*session, 40);
+  go(*session, 10);
+  step(*session, 3);
+  EXPECT_EQ(session->state().ahead, 0u);
+  EXPECT_EQ(session->state().left, 30u);
+  const auto other = session->state().positions;
+
+  // To the end of the first run, and then to that of the second one.
+  for (int turn = 0; turn < 2; ++turn) {
+    session->return_to_left_run();
+    ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.history == 40 && s.left == 3; }));
+    EXPECT_TRUE(session->state().positions == seen[40]);
+    session->return_to_left_run();
+    ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.history == 13; }));
+    EXPECT_TRUE(session->state().positions == other);
+  }
+
+  // A reset leaves a run as well.
+  session->reset();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.history == 0; }));
+  EXPECT_EQ(session->state().left, 13u);
+  session->return_to_left_run();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.history == 13; }));
+  EXPECT_TRUE(session->state().positions == other);
+  session->stop();
+  EXPECT_EQ(replay(session->recording()), session->recording().final_hash);
+}
+
+TEST(Session, StopsMakingStepsAgainWhenSomethingIsAskedFor) {
+  SessionOptions options;
+  options.history_bytes = 1;  // the first state and the newest one
+  const auto session = make({.step_ms = 20}, options);
+  step(*session, 40);
+  session->go(20);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  session->pause();
+  ASSERT_TRUE(wait_until(*session, [](const auto& s) { return s.rewinds == 1; }));
+  EXPECT_LT(session->state().history, 20u);
+  EXPECT_EQ(session->state().history + session->state().ahead, 40u);
 }
 
 TEST(Session, PausesOnARefusedStepAndGoesOnWithASmallerOne) {
