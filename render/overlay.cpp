@@ -14,6 +14,7 @@ constexpr Colour kMark{0.85f, 0.03f, 0.02f, 1};
 constexpr Colour kPin{0.02f, 0.16f, 0.55f, 1};
 constexpr Colour kHover{1, 1, 1, 0.9f};
 constexpr Colour kRim{0.01f, 0.01f, 0.015f, 0.85f};
+constexpr Colour kDrop{0.02f, 0.02f, 0.03f, 0.8f};
 constexpr int kRound = 20;  // corners of a disc
 
 /// The colour of a pull: from easy green over yellow to red, where the pull is as large as it may
@@ -64,6 +65,16 @@ class Builder {
       triangle(centre + a * u, centre + b * u, centre + b * v, colour);
       triangle(centre + a * u, centre + b * v, centre + a * v, colour);
     }
+  }
+
+  /// Adds a level disc, like a shadow.
+  void level_disc(Vec3d centre, double radius, const Colour& colour) {
+    const double r = radius * pixel(centre);
+    const auto at = [&](int k) {
+      const double angle = 2 * std::numbers::pi * k / kRound;
+      return centre + Vec3d{r * std::cos(angle), 0, r * std::sin(angle)};
+    };
+    for (int k = 0; k < kRound; ++k) triangle(centre, at(k), at(k + 1), colour);
   }
 
   /// Moves a point towards the eye by so many pixels, so that a flat shape is not cut by the cloth.
@@ -121,6 +132,15 @@ std::vector<OverlayVertex> overlay_triangles(const World& world, const Frame& fr
     builder.line(builder.lifted(handle.hit, 4), builder.lifted(handle.target, 4), 2.5, colour);
     builder.ball(handle.hit, 4, colour);
     builder.ball(handle.target, 6, colour);
+  }
+
+  // A dashed plumb line ends in a spot on what it meets.
+  constexpr int kDashes = 12;
+  for (const DropLine& drop : frame.drop_lines) {
+    const Vec3d dash = (1.0 / (2 * kDashes)) * (drop.to - drop.from);
+    for (int k = 0; k < kDashes; ++k)
+      builder.line(drop.from + (2. * k) * dash, drop.from + (2. * k + 1) * dash, 2, kDrop);
+    builder.level_disc(builder.lifted(drop.to, 2), 9, kDrop);
   }
 
   // A stitch is a line between its two points until they meet: red far apart, green near each

@@ -33,6 +33,11 @@ enum class Quality {
   still,        ///< area light and sky sampled by many shadow maps; the same bits every time
 };
 
+/// A plumb line from a point to what lies below it.
+struct DropLine {
+  Vec3d from, to;  ///< [m]
+};
+
 /// The content of a picture. The spans must stay valid during draw() only.
 struct Frame {
   std::span<const Vec3f> positions;            ///< all vertices of the world [m]
@@ -42,7 +47,8 @@ struct Frame {
   std::span<const Index> marked_vertices{};    ///< global vertices shown as dots (pins)
   /// Global vertices that are stitched and not sewn yet: lines, coloured by their lengths.
   std::span<const std::array<Index, 2>> stitches{};
-  std::span<const Vec3f> hover{};  ///< points under the pointer, drawn as rings [m]
+  std::span<const Vec3f> hover{};          ///< points under the pointer, drawn as rings [m]
+  std::span<const DropLine> drop_lines{};  ///< of hands, which show how deep they are in the scene
   ViewMode view = ViewMode::shaded;
   double strain_range = 0.1;  ///< strain that gets the last colour of the scale
 };

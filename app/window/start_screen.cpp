@@ -17,7 +17,8 @@ namespace {
 constexpr double kLongestPause = 0.2;  // between two pictures [s]
 constexpr double kStrainRange = 0.1;   // strain that gets the last colour
 constexpr double kDollyPerNotch = 0.88;
-constexpr float kPanelWidth = 380;  // at scale 1
+constexpr double kChoiceWait = 0.1;  // for input while a scene is chosen [s]
+constexpr float kPanelWidth = 380;   // at scale 1
 
 /// A panel without decoration: in the middle of an empty window, else in the corner at the bottom,
 /// where it hides little of the figure.
@@ -73,7 +74,8 @@ std::optional<std::string> StartScreen::choose(const std::string& problem) {
   chosen_.reset();
   has_picture_ = false;
   while (!chosen_ && !window_.should_close()) {
-    handle(window_.poll());
+    handle(window_.poll(kChoiceWait));
+    for (const std::string& file : window_.take_dropped()) chosen_ = file;
     ui_.begin_frame();
     draw_choice(problem);
     ui_.end_frame();
@@ -174,6 +176,7 @@ void StartScreen::draw_choice(const std::string& problem) {
   ImGui::TextUnformatted("Open a scene");
   for (const std::string& name : suggested_scenes())
     if (ImGui::Button(name.c_str(), {-1, 0})) chosen_ = name;
+  ImGui::TextDisabled("or drop a scene or a mesh onto this window");
   ImGui::End();
 }
 

@@ -1,7 +1,8 @@
 #include "app/window/viewer.h"
 
 #include <algorithm>
-#include <thread>
+#include <cmath>
+#include <cstdio>
 
 #include "app/common/element_names.h"
 #include "app/window/screenshot.h"
@@ -106,6 +107,7 @@ void Viewer::frame() {
   take_state();
   for (const WindowEvent& event : events) handle(event);
   hand_over();
+  for (const std::string& file : window_.take_dropped()) state_.open_scene = file;
 
   // A window that is not seen, or that shows all there is, draws nothing.
   if (test_file_.wanted() && window_.seconds() - last_status_ >= kStatusSeconds) {
@@ -279,6 +281,8 @@ void Viewer::draw_scene() {
   scene_frame.marked_vertices = pins;
   scene_frame.hover = hover;
   scene_frame.stitches = stitches_;
+  const std::optional<DropLine> drop = drop_line();
+  if (drop) scene_frame.drop_lines = {&*drop, 1};
   scene_frame.view = state_.view;
   scene_frame.strain_range = kStrainRange;
 
@@ -320,6 +324,38 @@ std::vector<HandleState> Viewer::handle_states() const {
     if (held.id >= kFirstScriptedHandle) list.push_back(held);
   }
   return list;
+}
+
+/// From the target in the hand down to the body or the floor below it.
+std::optional<DropLine> Viewer::drop_line() const {
+  const Handle* held = drag_.find(drag_.active());
+  if (!held) return std::nullopt;
+  const Ray down{held->target, {0, -1, 0}};
+  const Pick below = pick(world_, session_->state().positions, down);
+  if (below.hit_obstacle()) return DropLine{held->target, below.obstacle_point};
+  const double floor = std::min(renderer_.floor(), held->target.y);
+  return DropLine{held->target, {held->target.x, floor, held->target.z}};
+}
+
+/// Where the hand is in depth: before or behind which body, as the eye sees it.
+std::string Viewer::depth_text() const {
+  const Handle* held = drag_.find(drag_.active());
+  if (!held) return {};
+  const Vec3d eye = camera_.eye();
+  const double away = norm(held->target - eye);
+  const Pick seen =
+      pick(world_, session_->state().positions, {eye, (1 / away) * (held->target - eye)});
+  char text[120];
+  if (!seen.hit_obstacle()) {
+    std::snprintf(text, sizeof text, "hand %.2f m away", away);
+    return text;
+  }
+  const double behind = away - seen.obstacle_distance;
+  std::snprintf(text, sizeof text, "hand %.1f cm %s ", 100 * std::fabs(behind),
+                behind > 0 ? "behind" : "in front of");
+  const Index vertex = world_.face[static_cast<std::size_t>(seen.obstacle_face)][0];
+  const Index object = world_.object[static_cast<std::size_t>(vertex)];
+  return text + world_.objects[static_cast<std::size_t>(object)].name;
 }
 
 /// The held point of the cloth, where it is now.
@@ -374,6 +410,7 @@ StatusTexts Viewer::status_texts() const {
   texts.ui_fps = static_cast<double>(frame_times_.size());
   if (window_.seconds() < note_end_) texts.note = note_;
   texts.note_is_bad = note_is_bad_;
+  texts.depth = depth_text();
   return texts;
 }
 

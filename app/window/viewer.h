@@ -89,6 +89,8 @@ class Viewer {
   int handle_at(double x, double y) const;
   std::vector<HandleState> handle_states() const;
   Vec3d hit_point(const Handle& handle) const;
+  std::optional<DropLine> drop_line() const;
+  std::string depth_text() const;
   std::vector<Vec3d> cloth_points() const;
   std::vector<Index> failing_faces() const;
   void update_hover();

@@ -123,6 +123,11 @@ void Window::install_callbacks() {
     if (!entered) self(w).add({.kind = Kind::leave});
   });
 
+  glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+    self(w).last_input_ = glfwGetTime();
+    self(w).dropped_.assign(paths, paths + count);
+  });
+
   // What was covered by another window has to be shown again.
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).last_input_ = glfwGetTime(); });
 

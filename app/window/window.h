@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/gl_context.h"
@@ -40,6 +41,8 @@ class Window : public GlContext {
   /// Handles the events that arrived and returns them; where there are none, waits for them, or for
   /// a wake(), up to so many seconds.
   std::vector<WindowEvent> poll(double seconds = 0);
+  /// The files that were dropped onto the window since the last call.
+  std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
   /// Ends the wait of poll(). From any thread, while the window exists.
   static void wake();
   /// When the last frame was handed over, before any wait for the display's pace [s].
@@ -69,6 +72,7 @@ class Window : public GlContext {
 
   GLFWwindow* window_ = nullptr;
   std::vector<WindowEvent> events_;
+  std::vector<std::string> dropped_;
   double x_ = 0, y_ = 0;
   int width_ = 0, height_ = 0, framebuffer_width_ = 0, framebuffer_height_ = 0;
   int restore_[4] = {0, 0, 0, 0};                      ///< place and size before full screen

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace icloth {
 namespace {
 
@@ -22,6 +25,25 @@ TEST(Overlay, StitchesAreLinesUntilTheyAreShutAndRedderTheWiderTheyAre) {
   EXPECT_EQ(shut.size(), 0u);
   EXPECT_GT(wide[0].colour[0], narrow[0].colour[0]);
   EXPECT_LT(wide[0].colour[1], narrow[0].colour[1]);
+}
+
+TEST(Overlay, AHandHasAPlumbLineThatEndsInALevelSpot) {
+  const World world;
+  Frame frame;
+  const DropLine drop{{0.1, 0.8, 0}, {0.1, 0.2, 0}};
+  EXPECT_TRUE(overlay_triangles(world, frame, Camera(), 600).empty());
+  frame.drop_lines = {&drop, 1};
+  const auto drawn = overlay_triangles(world, frame, Camera(), 600);
+  ASSERT_FALSE(drawn.empty());
+  float low = 1, high = 0, wide = 0;
+  for (const OverlayVertex& v : drawn) {
+    low = std::min(low, v.position.y);
+    high = std::max(high, v.position.y);
+    wide = std::max(wide, std::abs(v.position.z));
+  }
+  EXPECT_NEAR(high, 0.8, 1e-3);
+  EXPECT_NEAR(low, 0.2, 0.02);
+  EXPECT_GT(wide, 0) << "the spot lies flat";
 }
 
 }  // namespace

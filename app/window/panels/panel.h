@@ -65,6 +65,7 @@ struct StatusTexts {
   double ui_fps = 0;
   std::string note;  ///< last message, empty after a while
   bool note_is_bad = false;
+  std::string depth;  ///< where the hand is in depth; empty: it holds nothing
 };
 
 inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1

@@ -64,6 +64,10 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
   ImGui::PopStyleColor();
 
   // The first line tells what can be done, or the last message.
+  if (!texts.depth.empty()) {
+    ImGui::TextUnformatted(shown(texts.depth).c_str());
+    ImGui::SameLine(0, ImGui::GetFontSize() * 1.3f);
+  }
   if (texts.note.empty()) {
     ImGui::TextDisabled("%s", hint_line(context.drag.grabbing()).c_str());
   } else {
