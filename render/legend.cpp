@@ -86,7 +86,7 @@ std::array<std::uint8_t, 3> scale_colour(double share) {
 
 void draw_legend(const Legend& legend, Image& image) {
   // All sizes are in dots of the letters, which get larger with the picture.
-  const int dot = std::max(1, static_cast<int>(std::lround(image.height / 400.0)));
+  const int dot = std::max(1, image.height / 600);
   constexpr int kMargin = 8, kLine = 12, kBar = 8, kWidth = 210;
   const int left = 2 * kMargin * dot;
   const int top = image.height - (3 * kMargin + 2 * kLine + kBar) * dot;
