@@ -3,10 +3,10 @@
 build_packages=(
   g++ cmake ninja-build pkg-config git
   libtbb-dev libcli11-dev nlohmann-json3-dev libassimp-dev libcgal-dev libboost-dev libeigen3-dev
-  zlib1g-dev libglfw3-dev libimgui-dev libstb-dev python3-glad libgl-dev libopengl-dev libegl-dev libgl1-mesa-dri
+  zlib1g-dev fonts-dejavu-core libglfw3-dev libimgui-dev libstb-dev python3-glad libgl-dev libopengl-dev libegl-dev libgl1-mesa-dri
   libgtest-dev
 )
-test_packages=(xvfb xdotool python3 ffmpeg)
+test_packages=(xvfb xdotool python3 ffmpeg dpkg-dev)
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -89,6 +89,7 @@ void Commands::add_view() {
   // Without a display the user learns of the commands that need none.
   const auto action = [this] {
 #if defined(ICLOTH_HAS_WINDOW)
+    view.choose = view.choose && app.get_subcommand("view")->count("SCENE") == 0;
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
       throw DeviceError("there is no display; without one use 'icloth run' or 'icloth render'");
     return run_view(view);
@@ -99,6 +100,7 @@ void Commands::add_view() {
   };
   CLI::App* command = add_command("view", "the window", action, &view.simulation);
   add_simulation_options(*command, view.simulation, false);
+  command->add_flag("--choose", view.choose, "ask for a scene where none is named");
 
   // The window writes files, and the user chooses how it draws and starts.
   command->add_option("--record", view.record_file, "save the session as a recording at the end");

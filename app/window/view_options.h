@@ -12,6 +12,7 @@ struct ViewOptions {
   std::string record_file;        ///< the session is written here at the end; empty: only Ctrl+S
   std::string screenshot_folder;  ///< F12 writes here; empty: the current folder
   std::string vertices = "auto";  ///< upload path of vertices: auto or host
+  bool choose = false;            ///< ask for a scene before the first one is opened
   bool play = true;               ///< start running
   bool play_script = false;       ///< apply the scene's scripted grabs as well
   int width = 1280, height = 800;

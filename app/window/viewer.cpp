@@ -247,7 +247,9 @@ bool Viewer::time_to_draw() {
   const double now = window_.seconds();
   if (dirty_) last_change_ = now;
   if (!software_ || want_screenshot_) return dirty_ || !sharp_;
-  if (!dirty_) return !sharp_ && now - last_change_ > kRestSeconds;
+
+  // While steps are made, what is drawn at half the resolution is soon old.
+  if (!dirty_) return !sharp_ && !session_->state().playing && now - last_change_ > kRestSeconds;
   return now - draw_end_ >= std::min(draw_seconds_, kLongestPause);
 }
 

@@ -29,6 +29,7 @@ class Window:
     """The program on a display of its own."""
 
     def __init__(self, program, folder, scene=SCENE, variables=None):
+        os.makedirs(folder, exist_ok=True)
         self.folder, self.seen = folder, []
         self.status_file = os.path.join(folder, "status.json")
         self.recording = os.path.join(folder, "session.json")
@@ -261,6 +262,19 @@ def check_no_display(program):
     assert "display" in done.stderr, done.stderr
 
 
+def check_choice(program, folder):
+    """As from the menu of a desktop: without a file the window asks for a scene."""
+    window = Window(program, os.path.join(folder, "choice"), scene=["--choose"])
+    try:
+        window.wait(lambda s: s["phase"] == "choosing", "the list of scenes", START_TIMEOUT)
+        window.find_window()
+        window.key("ctrl+q")
+        code = window.process.wait(60)
+        assert code == 0, f"Ctrl+Q ended with code {code}"
+    finally:
+        window.close()
+
+
 def prepare(prefix):
     """The program and an empty folder for its files; skips the test where a tool is missing."""
     for tool in ("Xvfb", "xdotool"):
@@ -275,6 +289,7 @@ def prepare(prefix):
 def main():
     program, folder = prepare("icloth_gui_")
     check_no_display(program)
+    check_choice(program, folder)
     window = Window(program, folder)
     try:
         window.wait_until_up()

@@ -53,7 +53,7 @@ class WindowProgram {
   /// Ends when the window is closed. Throws what opening the first scene throws; the others come
   /// from the list of the window, which says what is wrong.
   void run() {
-    std::optional<std::string> next = open(first_);
+    std::optional<std::string> next = first_.choose ? screen_.choose("") : open(first_);
     while (next) {
       try {
         next = open(options_for(first_, *next));
