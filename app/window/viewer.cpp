@@ -68,6 +68,7 @@ Viewer::Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
       scene_(std::move(scene)),
       world_(make_world(*scene_)),
       origin_(std::move(origin)),
+      names_(*scene_, origin_.layouts),
       start_conflicts_(find_start_conflicts(*scene_, build != Build::cpu64)),
       start_remedies_(start_remedies(*scene_, start_conflicts_, build != Build::cpu64)),
       start_intersections_(face_pairs(start_conflicts_)),
@@ -339,6 +340,10 @@ std::optional<DropLine> Viewer::drop_line() const {
   return DropLine{held->target, {held->target.x, floor, held->target.z}};
 }
 
+ClothPlace Viewer::place_of(const Pick& hit) const {
+  return cloth_place(world_, names_, session_->state().positions, hit.face, hit.barycentric);
+}
+
 /// Where the hand is in depth: before or behind which body, as the eye sees it.
 std::string Viewer::depth_text() const {
   const Handle* held = drag_.find(drag_.active());
@@ -412,7 +417,9 @@ StatusTexts Viewer::status_texts() const {
   texts.ui_fps = static_cast<double>(frame_times_.size());
   if (window_.seconds() < note_end_) texts.note = note_;
   texts.note_is_bad = note_is_bad_;
-  texts.depth = depth_text();
+  texts.pointer = depth_text();
+  if (hover_ && texts.pointer.empty() && state_.view == ViewMode::strain)
+    texts.pointer = place_of(hover_pick_).text();
   return texts;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/common/cloth_place.h"
 #include "app/session/garment_gauge.h"
 #include "app/session/session.h"
 #include "app/window/bindings.h"
@@ -91,6 +92,7 @@ class Viewer {
   Vec3d hit_point(const Handle& handle) const;
   std::optional<DropLine> drop_line() const;
   std::string depth_text() const;
+  ClothPlace place_of(const Pick& hit) const;
   std::vector<Vec3d> cloth_points() const;
   std::vector<Index> failing_faces() const;
   void update_hover();
@@ -108,6 +110,7 @@ class Viewer {
   std::shared_ptr<const Scene> scene_;
   World world_;
   SceneOrigin origin_;
+  ElementNames names_;  ///< of its elements
   StartConflicts start_conflicts_;
   std::vector<std::string> start_remedies_;
   std::vector<IntersectingFaces> start_intersections_;  ///< the faces of the conflicts
@@ -135,6 +138,7 @@ class Viewer {
   int gesture_button_ = 0;
   double press_x_ = 0, press_y_ = 0, press_time_ = -1;
   std::optional<Vec3d> hover_;  ///< cloth under the pointer [m]
+  Pick hover_pick_;             ///< the same, where hover_ is set
   Pick menu_pick_;
   int menu_handle_ = 0;
   bool open_menu_ = false, want_screenshot_ = false;

@@ -6,6 +6,7 @@
 
 #include "app/common/camera_json.h"
 #include "app/window/screenshot.h"
+#include "app/window/theme.h"
 #include "app/window/viewer.h"
 #include "sim/files/box.h"
 #include "sim/files/error.h"
@@ -383,8 +384,10 @@ void Viewer::draw_menu() {
   // Scripts and reports need the point in numbers.
   if (menu_pick_.reachable()) {
     ImGui::Separator();
-    ImGui::TextDisabled("face %d at %.3f, %.3f, %.3f m", menu_pick_.face, menu_pick_.point.x,
-                        menu_pick_.point.y, menu_pick_.point.z);
+    const ClothPlace place = place_of(menu_pick_);
+    ImGui::TextDisabled("%s", shown(place.text()).c_str());
+    ImGui::TextDisabled("%.3f, %.3f, %.3f m", place.position.x, place.position.y, place.position.z);
+    if (ImGui::MenuItem("Copy this place as JSON")) window_.set_clipboard(place.json());
   }
   ImGui::EndPopup();
   dirty_ = true;

@@ -66,7 +66,8 @@ void Viewer::update_hover() {
 
   std::optional<Vec3d> hover;
   if (wanted) {
-    if (const Pick under = pick_at(x_, y_); under.reachable()) hover = under.point;
+    hover_pick_ = pick_at(x_, y_);
+    if (hover_pick_.reachable()) hover = hover_pick_.point;
   }
   if (hover || hover_) dirty_ = true;
   hover_ = hover;

@@ -7,19 +7,23 @@
 
 namespace icloth {
 
-std::vector<double> face_strains(const World& world, std::span<const Vec3d> positions) {
-  std::vector<double> strains(at(world.cloth_faces));
-  for (std::size_t f = 0; f < strains.size(); ++f) {
-    const Triangle& t = world.face[f];
-    const Vec3d a = positions[at(t[1])] - positions[at(t[0])];
-    const Vec3d b = positions[at(t[2])] - positions[at(t[0])];
+double face_strain(const World& world, Index face, const std::array<Vec3d, 3>& x) {
+  const Vec3d a = x[1] - x[0], b = x[2] - x[0];
 
-    // The columns of the deformation gradient F, and the eigenvalues of FᵀF.
-    const auto& m = world.face_inverse[f];
-    const Vec3d u = m[0] * a + m[2] * b, v = m[1] * a + m[3] * b;
-    const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
-    const double largest = 0.5 * (uu + vv + std::hypot(uu - vv, 2 * uv));
-    strains[f] = std::sqrt(largest) - 1;
+  // The columns of the deformation gradient F, and the eigenvalues of FᵀF.
+  const auto& m = world.face_inverse[at(face)];
+  const Vec3d u = m[0] * a + m[2] * b, v = m[1] * a + m[3] * b;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
+  const double largest = 0.5 * (uu + vv + std::hypot(uu - vv, 2 * uv));
+  return std::sqrt(largest) - 1;
+}
+
+std::vector<double> face_strains(const World& world, std::span<const Vec3d> positions) {
+  std::vector<double> strains;
+  for (Index f = 0; f < world.cloth_faces; ++f) {
+    const Triangle& t = world.face[at(f)];
+    strains.push_back(
+        face_strain(world, f, {positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]}));
   }
   return strains;
 }

@@ -65,7 +65,9 @@ struct StatusTexts {
   double ui_fps = 0;
   std::string note;  ///< last message, empty after a while
   bool note_is_bad = false;
-  std::string depth;  ///< where the hand is in depth; empty: it holds nothing
+  /// Of the place under the pointer, or of the depth of the hand that holds the cloth; may be
+  /// empty.
+  std::string pointer;
 };
 
 inline constexpr float kPanelWidth = 340, kBarHeight = 52;  ///< at scale 1

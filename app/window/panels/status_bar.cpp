@@ -64,8 +64,8 @@ void draw_status_bar(PanelContext& context, const StatusTexts& texts, const Rect
   ImGui::PopStyleColor();
 
   // The first line tells what can be done, or the last message.
-  if (!texts.depth.empty()) {
-    ImGui::TextUnformatted(shown(texts.depth).c_str());
+  if (!texts.pointer.empty()) {
+    ImGui::TextUnformatted(shown(texts.pointer).c_str());
     ImGui::SameLine(0, ImGui::GetFontSize() * 1.3f);
   }
   if (texts.note.empty()) {
