@@ -59,6 +59,7 @@ constexpr Binding kTable[] = {
     {T::key, key::kLeft, kShift, H::any, U::any, A::other_run, kTime, "Shift+Left", "the run that was left by going on from an older state or by a reset", ""},
     {T::key, 'O', kPlain, H::any, U::any, A::pass_over, kTime, "O", "go on over a refused step: the clock moves, the cloth rests where it is", ""},
     {T::key, 'R', kPlain, H::any, U::any, A::reset, kTime, "R", "reset to the start state; parameters stay", ""},
+    {T::key, 'R', kCtrl, H::any, U::any, A::reload, kTime, "Ctrl+R", "open the scene again from its file; the camera stays", ""},
     {T::key, 'Z', kCtrl, H::any, U::any, A::undo, kTime, "Ctrl+Z, Ctrl+Shift+Z", "undo and redo changes of parameters", ""},
     {T::key, 'Z', kCtrl | kShift, H::any, U::any, A::redo, kTime, "", "", ""},
     {T::key, 'S', kCtrl, H::any, U::any, A::save_session, kTime, "Ctrl+S", "save the session; icloth replay runs it again", ""},

@@ -31,7 +31,7 @@ enum class Action {
   look_from_back, look_from_left, look_from_right, look_from_top, scene_camera, menu, copy_camera,
   paste_camera,
   // simulation
-  play_pause, hold_bodies, step, step_back, step_forward, other_run, pass_over, reset, undo, redo, save_session,
+  play_pause, hold_bodies, step, step_back, step_forward, other_run, pass_over, reset, reload, undo, redo, save_session,
   // window
   view_shaded, view_wireframe, view_strain, toggle_panels, help, full_screen, screenshot, quit,
 };

@@ -70,14 +70,15 @@ bool StartScreen::show(SceneOpening& opening, const std::string& name) {
   return false;
 }
 
-std::optional<std::string> StartScreen::choose(const std::string& problem) {
+std::optional<std::string> StartScreen::choose(const std::string& problem,
+                                               const std::string& again) {
   chosen_.reset();
   has_picture_ = false;
   while (!chosen_ && !window_.should_close()) {
     handle(window_.poll(kChoiceWait));
     for (const std::string& file : window_.take_dropped()) chosen_ = file;
     ui_.begin_frame();
-    draw_choice(problem);
+    draw_choice(problem, again);
     ui_.end_frame();
     show_frame();
     write_status("choosing", 0);
@@ -165,7 +166,7 @@ void StartScreen::draw_opening(const DressingPicture& picture, const std::string
   ImGui::End();
 }
 
-void StartScreen::draw_choice(const std::string& problem) {
+void StartScreen::draw_choice(const std::string& problem, const std::string& again) {
   begin_panel(window_, "##choice", ui_.scale(), false);
   if (!problem.empty()) {
     ImGui::PushTextWrapPos();
@@ -173,6 +174,8 @@ void StartScreen::draw_choice(const std::string& problem) {
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
   }
+  if (!again.empty() && ImGui::Button(("Try " + shown(again) + " again").c_str(), {-1, 0}))
+    chosen_ = again;
   ImGui::TextUnformatted("Open a scene");
   for (const std::string& name : suggested_scenes())
     if (ImGui::Button(name.c_str(), {-1, 0})) chosen_ = name;

@@ -29,15 +29,15 @@ class StartScreen {
   /// The camera that the user turned meanwhile; null: it is still that of the scene.
   const Camera* chosen_camera() const { return camera_moved_ ? &camera_ : nullptr; }
 
-  /// Asks for one of the built-in scenes; `problem`: why the last one is not there, may be empty.
-  /// None: the window was closed.
-  std::optional<std::string> choose(const std::string& problem);
+  /// Asks for one of the built-in scenes; `problem`: why the last one is not there, may be empty;
+  /// `again`: its name, so that it can be tried once more. None: the window was closed.
+  std::optional<std::string> choose(const std::string& problem, const std::string& again = "");
 
  private:
   void take_picture(SceneOpening& opening);
   void handle(const std::vector<WindowEvent>& events);
   void draw_opening(const DressingPicture& picture, const std::string& name);
-  void draw_choice(const std::string& problem);
+  void draw_choice(const std::string& problem, const std::string& again);
   void draw_scene(const DressingPicture& picture);
   void show_frame();
   void write_status(const char* phase, int dressing_step);

@@ -40,6 +40,7 @@ class Viewer {
          std::shared_ptr<const Scene> scene, SceneOrigin origin);
 
   void look_from(const Camera& camera) { camera_ = camera; }
+  const Camera& camera() const { return camera_; }
 
   /// Runs until the window is closed or another scene is chosen, whose name it returns. Writes the
   /// recording when the options ask for it.

@@ -260,6 +260,11 @@ bool Viewer::act_on_session(Action action) {
       session_->reset();
       return true;
 
+    // The program knows by what name the scene was opened.
+    case Action::reload:
+      state_.open_scene = options_.simulation.scene;
+      return true;
+
     // Changes of parameters have a history of their own.
     case Action::undo:
       if (!edits_.undo()) tell("There is nothing to undo.");

@@ -242,6 +242,18 @@ def check_cameras(window):
     window.key("shift+Home")
 
 
+def check_reload(window):
+    before = window.next_status()
+    window.key("F5")
+    eye = window.wait(lambda s: s["eye"] != before["eye"], "another camera")["eye"]
+    eye = window.next_status()["eye"]
+    window.key("ctrl+r")
+    again = window.wait(lambda s: 3 <= s["step"] < before["step"], "the scene from its start",
+                        START_TIMEOUT)
+    assert again["eye"] == eye, "the camera stays"
+    window.find_window()
+
+
 def check_end(window, program):
     window.key("ctrl+q")
     code = window.process.wait(60)
@@ -297,6 +309,7 @@ def main():
         check_keys(window)
         check_cameras(window)
         check_frames(window)
+        check_reload(window)
         check_end(window, program)
     finally:
         window.close()

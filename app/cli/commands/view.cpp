@@ -28,9 +28,10 @@ std::unique_ptr<SceneOpening> start_opening(const SimulationOptions& options) {
 /// In a window, cloth at rest is not computed. Settings that users give come later and count.
 const std::string kWindowSetting = "step.sleep=on";
 
-/// The options for another scene: what was said about the first one's parameters does not fit it.
+/// The options for a scene: what was said about the first one's parameters does not fit another.
 ViewOptions options_for(const ViewOptions& first, const std::string& scene) {
   ViewOptions options = first;
+  if (scene == first.simulation.scene) return options;
   options.simulation.scene = scene;
   options.simulation.overrides = {kWindowSetting};
   options.simulation.preset.clear();
@@ -58,7 +59,7 @@ class WindowProgram {
       try {
         next = open(options_for(first_, *next));
       } catch (const InputError& error) {
-        next = screen_.choose(error.what());
+        next = screen_.choose(error.what(), *next);
       }
     }
     window_.hide();
@@ -80,8 +81,12 @@ class WindowProgram {
     const std::shared_ptr<const Scene> scene = opening->scene();
     print_notes(opening->origin());
     Viewer viewer(window_, ui_, options, build_, scene, std::move(opening->origin()));
+    if (options.simulation.scene == last_scene_) viewer.look_from(last_camera_);
     if (const Camera* camera = screen_.chosen_camera()) viewer.look_from(*camera);
-    return viewer.run();
+    std::optional<std::string> next = viewer.run();
+    last_scene_ = options.simulation.scene;
+    last_camera_ = viewer.camera();
+    return next;
   }
 
   /// A search for a start that nobody waits for any more ends with the program. It writes nothing
@@ -98,6 +103,8 @@ class WindowProgram {
   Window window_;
   Ui ui_;
   StartScreen screen_;
+  std::string last_scene_;  ///< that was open, and from where it was seen
+  Camera last_camera_;
   std::vector<std::unique_ptr<SceneOpening>> abandoned_;  ///< that may still be at work
 };
 
