@@ -152,9 +152,10 @@ double Viewer::time_to_wait() const {
 
   // A step in progress counts its seconds, a text field has a cursor that blinks, and a message
   // goes away.
-  const bool ages = session_->state().playing || ui_.wants_text() ||
-                    (last_frame_ < note_end_ && now >= note_end_);
-  const bool has_news = !shows_state_ || dirty_ || !sharp_ || (ages && now - last_frame_ > kActive);
+  const bool playing = session_->state().playing;
+  const bool ages = playing || ui_.wants_text() || (last_frame_ < note_end_ && now >= note_end_);
+  const bool has_news =
+      !shows_state_ || dirty_ || (!sharp_ && !playing) || (ages && now - last_frame_ > kActive);
   if (!has_news) return kRest;
   const double pause = software_ ? std::clamp(frame_seconds_ / kShare, kShortest, kLongest) : 0;
   return std::clamp(last_frame_ + pause - now, 0., kRest);
