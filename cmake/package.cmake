@@ -12,10 +12,9 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME icloth)
 set(CPACK_PACKAGE_CONTACT "the icloth maintainers <maintainers@icloth.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "interactive cloth simulation without penetrations")
-set(CPACK_PACKAGE_DESCRIPTION
-    "Drag cloth with the mouse, tune the solver while it moves, dress moving bodies from sewing\n"
-    "patterns, make pictures and videos without a display. Cloth never goes through itself or a body.")
-string(CONCAT CPACK_PACKAGE_DESCRIPTION ${CPACK_PACKAGE_DESCRIPTION})
+string(CONCAT CPACK_PACKAGE_DESCRIPTION
+  "Drag cloth with the mouse, tune the solver while it moves, dress moving bodies from sewing\n"
+  "patterns, make pictures and videos without a display. Cloth never goes through itself or a body.")
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core")

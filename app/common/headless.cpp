@@ -70,8 +70,7 @@ Recording::Step next_input(const HeadlessJob& job, ScriptedInput& script, long s
 void apply_parameters(Simulator& simulator, const Recording::Step& input) {
   if (input.parameters.empty()) return;
   Parameters parameters = simulator.parameters();
-  for (const auto& [name, value] : input.parameters)
-    set_parameter(parameters, *find_parameter(name), value);
+  apply_changes(input, parameters);
   simulator.set_parameters(parameters);
 }
 
@@ -125,6 +124,11 @@ void check_state(const Simulator& simulator, Progress& progress, HeadlessResult&
 }
 
 }  // namespace
+
+void apply_changes(const Recording::Step& step, Parameters& parameters) {
+  for (const auto& [name, value] : step.parameters)
+    set_parameter(parameters, *find_parameter(name), value);
+}
 
 void print_notes(const SceneOrigin& origin) { print_notes(origin.notes); }
 

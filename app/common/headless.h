@@ -62,6 +62,9 @@ struct HeadlessResult {
 /// refused steps are printed to stderr. Throws InputError where a checkpoint is of another scene.
 HeadlessResult run_headless(const HeadlessJob& job);
 
+/// Applies the changes of parameters that were recorded before a step.
+void apply_changes(const Recording::Step& step, Parameters& parameters);
+
 /// Makes the simulator pass over the step that it just refused, and says what that did to the
 /// state: "went on to 0.3 s with the cloth at rest: …".
 std::string pass_over_step(Simulator& simulator);

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -24,33 +25,16 @@ namespace {
 /// moved to its front at the end, so that players can start before they have all of it.
 std::vector<std::string> command(const std::string& out, int width, int height, int rate) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  return {"ffmpeg",
-          "-nostdin",
-          "-y",
-          "-loglevel",
-          "error",
-          "-f",
-          "rawvideo",
-          "-pix_fmt",
-          "rgba",
-          "-s:v",
-          size,
-          "-r",
-          std::to_string(rate),
-          "-i",
-          "pipe:0",
-          "-an",
-          "-c:v",
-          "libx264",
-          "-crf",
-          "18",
-          "-pix_fmt",
-          "yuv420p",
-          "-movflags",
-          "+faststart",
-          "-f",
-          "mp4",
-          "file:" + out};
+  std::istringstream options("-nostdin -y -loglevel error -f rawvideo -pix_fmt rgba -s:v " + size +
+                             " -r " + std::to_string(rate) +
+                             " -i pipe:0 -an -c:v libx264 -crf 18 -pix_fmt yuv420p"
+                             " -movflags +faststart -f mp4");
+
+  // A path may have blanks of its own, and a colon.
+  std::vector<std::string> words{"ffmpeg"};
+  for (std::string word; options >> word;) words.push_back(word);
+  words.push_back("file:" + out);
+  return words;
 }
 
 void close_file(int& file) {

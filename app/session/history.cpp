@@ -9,7 +9,8 @@ namespace icloth {
 namespace {
 
 std::size_t size_of(const HistoryEntry& entry) {
-  return sizeof entry - sizeof entry.snapshot + memory_bytes(entry.snapshot);
+  return sizeof entry - sizeof entry.snapshot + memory_bytes(entry.snapshot) +
+         entry.positions.size() * sizeof(Vec3f);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <vector>
 
 #include "sim/scene/input.h"
 #include "sim/simulator.h"
@@ -15,6 +16,8 @@ struct HistoryEntry {
   Snapshot snapshot;
   std::size_t recorded_steps = 0;  ///< length of the recording at that moment
   Parameters parameters;           ///< in force for the step before
+  /// Of all vertices of the scene [m]; the snapshot has fewer where a seam was welded.
+  std::vector<Vec3f> positions{};
 };
 
 /// The states that fit into a number of bytes; the first and the newest one are always kept.

@@ -228,21 +228,22 @@ void Session::handle(const Back& back) {
 void Session::handle(const Go& go) { travel(go.steps, present_run()); }
 
 void Session::handle(const Preview& preview) {
+  // At its own place the slider shows the present state.
   playing_ = single_ = false;
   const HistoryEntry* entry =
       preview.steps == recording_.steps.size() ? nullptr : history_.before(preview.steps);
   if (!entry) return publish(true);
+
+  // The kept positions stand in for those of the simulator, which stays where it is.
   PublishedState& state = published_.back();
   fill(state);
   state.step = entry->snapshot.step;
   state.time = entry->snapshot.time;
-  state.positions.clear();
-  for (const Vec3d& p : entry->snapshot.x1) state.positions.push_back(convert<float>(p));
+  state.positions = entry->positions;
   state.on_device.reset();
   state.handles.clear();
   state.preview = true;
-  published_.publish();
-  if (options_.published) options_.published();
+  hand_over();
 }
 
 void Session::handle(const Toggle& toggle) {
@@ -333,8 +334,7 @@ void Session::advance() {
   const Clock::time_point begin = Clock::now();
   Recording::Step step;
   const bool done = guarded([&] {
-    // The snapshot is of the state before the step, to which going back returns.
-    history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_});
+    keep_state();
     step = next_step();
     step_begin_ = begin.time_since_epoch().count();
     report_ = simulator_->step(step.events);
@@ -462,12 +462,20 @@ void Session::restore(const HistoryEntry& entry, const Run& run) {
   report_.time = entry.snapshot.time;
 }
 
+/// Keeps the state before a step, to which going back returns.
+void Session::keep_state() {
+  HistoryEntry entry{simulator_->snapshot(), recording_.steps.size(), recorded_parameters_};
+  simulator_->positions(entry.positions);
+  history_.push(std::move(entry));
+}
+
 /// Makes a recorded step once more; equal input gives equal bits.
 void Session::make_again(const Recording::Step& step) {
-  history_.push({simulator_->snapshot(), recording_.steps.size(), recorded_parameters_});
-  for (const auto& [name, value] : step.parameters)
-    set_parameter(recorded_parameters_, *find_parameter(name), value);
+  keep_state();
+  apply_changes(step, recorded_parameters_);
   if (!step.parameters.empty()) simulator_->set_parameters(recorded_parameters_);
+
+  // What was passed over then is passed over now.
   step_begin_ = Clock::now().time_since_epoch().count();
   report_ = simulator_->step(step.events);
   step_begin_ = 0;
@@ -540,6 +548,11 @@ void Session::publish(bool always) {
   PublishedState& state = published_.back();
   fill(state);
   read_positions(state);
+  hand_over();
+}
+
+/// Makes the state that was filled the newest one, and tells who waits for it.
+void Session::hand_over() {
   published_.publish();
   if (options_.published) options_.published();
 }

@@ -168,6 +168,7 @@ class Session {
   void travel(std::size_t target, const Run& run);
   void restore(const HistoryEntry& entry, const Run& run);
   void make_again(const Recording::Step& step);
+  void keep_state();
   void settle();
   bool has_mail();
   void explain_refusal();
@@ -176,6 +177,7 @@ class Session {
   void note(const std::string& text, bool bad = false);
   void publish(bool always);
   void fill(PublishedState& state) const;
+  void hand_over();
   void read_positions(PublishedState& state);
   template <class Work>
   bool guarded(const Work& work);

@@ -276,7 +276,7 @@ void Viewer::draw_scene() {
     if (world_.pinned[static_cast<std::size_t>(v)]) pins.push_back(v);
   }
   std::vector<Vec3f> hover;
-  if (hover_ && !drag_.grabbing()) hover.push_back(convert<float>(*hover_));
+  if (hover_ && !drag_.grabbing()) hover.push_back(convert<float>(hover_->point));
   Frame scene_frame;
   scene_frame.positions = session_->state().positions;
   scene_frame.on_device = session_->state().on_device.get();
@@ -349,6 +349,8 @@ ClothPlace Viewer::place_of(const Pick& hit) const {
 std::string Viewer::depth_text() const {
   const Handle* held = drag_.find(drag_.active());
   if (!held) return {};
+
+  // Without a body behind or before the hand there is the distance alone.
   const Vec3d eye = camera_.eye();
   const double away = norm(held->target - eye);
   const Pick seen =
@@ -358,6 +360,8 @@ std::string Viewer::depth_text() const {
     std::snprintf(text, sizeof text, "hand %.2f m away", away);
     return text;
   }
+
+  // The body is named as the scene names it.
   const double behind = away - seen.obstacle_distance;
   std::snprintf(text, sizeof text, "hand %.1f cm %s ", 100 * std::fabs(behind),
                 behind > 0 ? "behind" : "in front of");
@@ -420,7 +424,7 @@ StatusTexts Viewer::status_texts() const {
   texts.note_is_bad = note_is_bad_;
   texts.pointer = depth_text();
   if (hover_ && texts.pointer.empty() && state_.view == ViewMode::strain)
-    texts.pointer = place_of(hover_pick_).text();
+    texts.pointer = place_of(*hover_).text();
   return texts;
 }
 

@@ -138,8 +138,7 @@ class Viewer {
   Gesture gesture_ = Gesture::none;
   int gesture_button_ = 0;
   double press_x_ = 0, press_y_ = 0, press_time_ = -1;
-  std::optional<Vec3d> hover_;  ///< cloth under the pointer [m]
-  Pick hover_pick_;             ///< the same, where hover_ is set
+  std::optional<Pick> hover_;  ///< cloth under the pointer
   Pick menu_pick_;
   int menu_handle_ = 0;
   bool open_menu_ = false, want_screenshot_ = false;

@@ -1,8 +1,7 @@
 // The effects of the actions in the table of bindings.
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <tuple>
+#include <iterator>
 
 #include "app/common/camera_json.h"
 #include "app/window/screenshot.h"
@@ -18,23 +17,17 @@ namespace {
 
 constexpr double kDollyPerNotch = 0.88;
 
-/// The direction of an action that looks at everything from one side; none for others.
-std::optional<Vec3d> direction_of(Action action) {
-  switch (action) {
-    case Action::look_from_front:
-      return Vec3d{0, 0, -1};
-    case Action::look_from_back:
-      return Vec3d{0, 0, 1};
-    case Action::look_from_left:
-      return Vec3d{1, 0, 0};
-    case Action::look_from_right:
-      return Vec3d{-1, 0, 0};
-    case Action::look_from_top:
-      return Vec3d{0, -1, 0};
-    default:
-      return std::nullopt;
-  }
-}
+/// A side from which everything can be looked at.
+struct Side {
+  const char *label, *key;  ///< of the menu
+  Action action;
+  Vec3d direction;  ///< of sight
+};
+constexpr Side kSides[] = {{"From the front", "F5", Action::look_from_front, {0, 0, -1}},
+                           {"From the back", "F6", Action::look_from_back, {0, 0, 1}},
+                           {"From the left", "F7", Action::look_from_left, {1, 0, 0}},
+                           {"From the right", "F8", Action::look_from_right, {-1, 0, 0}},
+                           {"From the top", "F9", Action::look_from_top, {0, -1, 0}}};
 
 Vec3d picked_point(const Pick& pick) { return pick.reachable() ? pick.point : pick.obstacle_point; }
 
@@ -141,9 +134,12 @@ bool Viewer::act_on_hands(Action action, double amount) {
 
 /// Carries out an action of the camera; false when it is none.
 bool Viewer::act_on_camera(Action action, double amount) {
-  const std::optional<Vec3d> side = direction_of(action);
-  if (side) camera_.look_along(*side);
-  if (side) action = Action::frame_all;
+  // Looking from a side turns the camera and frames everything.
+  const Side* side = std::ranges::find(kSides, action, &Side::action);
+  if (side != std::end(kSides)) {
+    camera_.look_along(side->direction);
+    action = Action::frame_all;
+  }
   switch (action) {
     // A gesture moves the camera until its button goes up.
     case Action::orbit:
@@ -352,15 +348,11 @@ void Viewer::draw_camera_menu() {
     choose_camera(k);
     drag_.follow_camera(cursor_ray());
   }
+
+  // The sides follow.
   ImGui::Separator();
-  constexpr std::tuple<const char*, const char*, Action> kSides[] = {
-      {"From the front", "F5", Action::look_from_front},
-      {"From the back", "F6", Action::look_from_back},
-      {"From the left", "F7", Action::look_from_left},
-      {"From the right", "F8", Action::look_from_right},
-      {"From the top", "F9", Action::look_from_top}};
-  for (const auto& [label, key, action] : kSides)
-    if (ImGui::MenuItem(label, key)) act(action);
+  for (const Side& side : kSides)
+    if (ImGui::MenuItem(side.label, side.key)) act(side.action);
   ImGui::EndMenu();
 }
 

@@ -64,10 +64,9 @@ void Viewer::update_hover() {
   if (wanted && !hover_stale_) return;
   hover_stale_ = false;
 
-  std::optional<Vec3d> hover;
+  std::optional<Pick> hover;
   if (wanted) {
-    hover_pick_ = pick_at(x_, y_);
-    if (hover_pick_.reachable()) hover = hover_pick_.point;
+    if (const Pick under = pick_at(x_, y_); under.reachable()) hover = under;
   }
   if (hover || hover_) dirty_ = true;
   hover_ = hover;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace icloth {
@@ -134,27 +136,12 @@ std::string shown_path(std::string_view path) {
 }
 
 std::string markup_text(std::string_view text) {
+  constexpr std::pair<char, std::string_view> kMarks[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
+    const auto* mark = std::ranges::find(kMarks, c, &std::pair<char, std::string_view>::first);
+    out += mark != std::end(kMarks) ? mark->second : std::string_view(&c, 1);
   }
   return out;
 }

@@ -118,6 +118,12 @@ class Window:
             time.sleep(0.1)
         raise AssertionError("F12 wrote no picture")
 
+    def quit(self):
+        """Ends the program as a user does."""
+        self.key("ctrl+q")
+        code = self.process.wait(60)
+        assert code == 0, f"Ctrl+Q ended with code {code}"
+
     def close(self):
         for process in (self.process, self.server):
             if process.poll() is None:
@@ -245,7 +251,7 @@ def check_cameras(window):
 def check_reload(window):
     before = window.next_status()
     window.key("F5")
-    eye = window.wait(lambda s: s["eye"] != before["eye"], "another camera")["eye"]
+    window.wait(lambda s: s["eye"] != before["eye"], "another camera")
     eye = window.next_status()["eye"]
     window.key("ctrl+r")
     again = window.wait(lambda s: 3 <= s["step"] < before["step"], "the scene from its start",
@@ -255,14 +261,12 @@ def check_reload(window):
 
 
 def check_end(window, program):
-    window.key("ctrl+q")
-    code = window.process.wait(60)
-    assert code == 0, f"Ctrl+Q ended with code {code}"
+    window.quit()
     worst = max(s["penetrations"] for s in window.seen)
     print(f"{len(window.seen)} status lines, penetrations {worst}")
     assert worst == 0, "penetrations were reported"
     done = subprocess.run([program, "replay", window.recording, "--quiet"],
-                          text=True, capture_output=True, check=False)
+                          text=True, capture_output=True, check=False, env=window.environment)
     assert done.returncode == 0, f"the session does not repeat: {done.stdout}{done.stderr}"
 
 
@@ -280,9 +284,7 @@ def check_choice(program, folder):
     try:
         window.wait(lambda s: s["phase"] == "choosing", "the list of scenes", START_TIMEOUT)
         window.find_window()
-        window.key("ctrl+q")
-        code = window.process.wait(60)
-        assert code == 0, f"Ctrl+Q ended with code {code}"
+        window.quit()
     finally:
         window.close()
 

@@ -7,6 +7,7 @@
 
 #include "render/comparison_page.h"
 #include "sim/files/error.h"
+#include "sim/files/file_io.h"
 #include "sim/files/text.h"
 
 namespace icloth {
@@ -34,7 +35,7 @@ GoldenPicture open_golden(const std::string& path, const std::string& out,
   GoldenPicture golden{path, std::nullopt, parse_tolerance(tolerance), update};
 
   // A golden picture that is made for the first time has no size yet.
-  if (fs::path(path).extension() != ".png") refuse("expected FILE.png");
+  if (lower_extension(path) != ".png") refuse("expected FILE.png");
   const auto place = [](const std::string& file) {
     return fs::weakly_canonical(fs::absolute(file));
   };

@@ -14,18 +14,11 @@ namespace fs = std::filesystem;
 using icloth::testing::Cli;
 using icloth::testing::contains;
 using icloth::testing::count_lines;
+using icloth::testing::kDrop;
 using icloth::testing::Outcome;
 using icloth::testing::read;
 
 namespace {
-
-/// A small sheet 1 mm above a ball; the ball is wide enough to catch it.
-constexpr const char* kDrop = R"({
-  "name": "Drop", "time_step": 0.01, "duration": 0.2,
-  "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
-                "transform": { "translate": [0, 0.11, 0], "rotate": [90, 0, 0] } } ],
-  "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
-})";
 
 /// A front and a back, sewn at one side.
 constexpr const char* kSack = R"({"pattern": {"panels": {

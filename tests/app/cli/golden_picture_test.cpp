@@ -7,21 +7,12 @@
 namespace icloth::testing {
 namespace {
 
-/// A sheet above a ball, which is drawn where it starts.
-constexpr const char* kScene = R"({
-  "name": "still", "time_step": 0.01, "duration": 0.1,
-  "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
-                "transform": { "translate": [0, 0.11, 0], "rotate": [70, 0, 0] } } ],
-  "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
-})";
-
 class Golden : public Cli {
  protected:
   /// Draws the scene after some steps.
   Outcome draw(const std::string& steps, const std::string& options) const {
-    write("still.json", kScene);
-    return icloth("render still.json --device cpu --quality draft --steps " + steps + " " +
-                  options);
+    write("drop.json", kDrop);
+    return icloth("render drop.json --device cpu --quality draft --steps " + steps + " " + options);
   }
 };
 
@@ -74,7 +65,7 @@ TEST_F(Golden, ThatCannotBeComparedWithIsRefusedBeforeTheRun) {
   const Outcome drawn = draw("0", "--size 160x120");
   if (drawn.code == 3) GTEST_SKIP() << drawn.err;
   write("no.png", "no picture");
-  const std::string render = "render still.json --steps 0 ";
+  const std::string render = "render drop.json --steps 0 ";
   expect_bad_input(render + "--compare none.png", "none.png: is not there");
   expect_bad_input(render + "--compare no.png", "no.png: missing or no PNG picture");
   expect_bad_input(render + "--compare golden.jpg", "expected FILE.png");

@@ -15,6 +15,14 @@ namespace icloth::testing {
 
 namespace fs = std::filesystem;
 
+/// A small sheet 1 mm above a ball; the ball is wide enough to catch it.
+inline constexpr const char* kDrop = R"({
+  "name": "Drop", "time_step": 0.01, "duration": 0.2,
+  "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
+                "transform": { "translate": [0, 0.11, 0], "rotate": [90, 0, 0] } } ],
+  "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
+})";
+
 struct Outcome {
   int code = -1;
   std::string out, err;

@@ -10,22 +10,14 @@
 namespace icloth::testing {
 namespace {
 
-/// A sheet that falls onto a ball.
-constexpr const char* kScene = R"({
-  "name": "fall", "time_step": 0.01, "duration": 0.5,
-  "cloths": [ { "name": "sheet", "mesh": { "grid": { "size": [0.2, 0.2] } }, "triangles": 200,
-                "transform": { "translate": [0, 0.11, 0], "rotate": [70, 0, 0] } } ],
-  "obstacles": [ { "name": "ball", "mesh": { "sphere": { "radius": 0.1, "triangles": 300 } } } ]
-})";
-
 constexpr int kWidth = 160, kHeight = 120;
-const std::string kRender = "render fall.json --device cpu --quality draft --size 160x120 ";
+const std::string kRender = "render drop.json --device cpu --quality draft --size 160x120 ";
 
 class Video : public Cli {
  protected:
   void SetUp() override {
     Cli::SetUp();
-    write("fall.json", kScene);
+    write("drop.json", kDrop);
     if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
     const Outcome drawn = icloth(kRender + "--steps 0 --out first.png");
     if (drawn.code == 3) GTEST_SKIP() << drawn.err;
@@ -53,12 +45,12 @@ double mean_difference(const std::string& frames, std::size_t frame, const Image
 }
 
 TEST_F(Video, ShowsTheRunAtItsSpeed) {
-  const Outcome made = icloth(kRender + "--steps 20 --fps 25 --out fall.mp4");
+  const Outcome made = icloth(kRender + "--steps 20 --fps 25 --out drop.mp4");
   ASSERT_EQ(made.code, 0) << made.err;
-  EXPECT_FALSE(fs::exists(folder_ / "fall.mp4.part"));
+  EXPECT_FALSE(fs::exists(folder_ / "drop.mp4.part"));
 
   // Frames at 0, 0.04 … 0.2 s: the first shows the start state, the last the one after 20 steps.
-  const std::string frames = decoded("fall.mp4");
+  const std::string frames = decoded("drop.mp4");
   ASSERT_EQ(frames.size(), 6 * kFrame);
   ASSERT_EQ(icloth(kRender + "--steps 20 --out last.png").code, 0);
   const Image first = read_png((folder_ / "first.png").string());
@@ -98,7 +90,7 @@ TEST_F(Video, OfAStartThatIsRefusedShowsItForASecond) {
 }
 
 TEST_F(Video, ThatCannotBeMadeIsRefusedInOneLine) {
-  expect_bad_input("render fall.json --device cpu --size 161x120 --out a.mp4", "even numbers");
+  expect_bad_input("render drop.json --device cpu --size 161x120 --out a.mp4", "even numbers");
   expect_bad_input(kRender + "--out none/a.mp4", "there is no folder 'none'");
   expect_bad_input(kRender + "--out a.avi", "expected FILE.png or FILE.mp4");
   expect_bad_input(kRender + "--out a.mp4 --compare first.png", "is for pictures");
