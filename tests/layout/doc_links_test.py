@@ -8,7 +8,7 @@
   `*`, or NAME for the same, and a folder may end with `/`.
 - A source in backticks without a folder, such as `plate.h`, is the name of some source.
 - A dotted parameter in backticks is one of the table in sim/scene/parameters.cpp.
-- README.md names every option of the program, except --version.
+- docs/command-line.md names every option of the program, except --version.
 
 Paths that are meant not to exist are listed in COMING; the first column of a table that is headed
 `before` has old paths and is left out."""
@@ -88,10 +88,10 @@ class Names:
 
 
 def unnamed_options(root):
-    """The options of the command line that README.md does not have."""
-    readme = (root / "README.md").read_text()
+    """The options of the command line that docs/command-line.md does not have."""
+    page = (root / "docs/command-line.md").read_text()
     found = {option for file in OPTIONS for option in re.findall(r'"(--[a-z-]+)', (root / file).read_text())}
-    return sorted(option for option in found - {"--version"} if not re.search(option + r"(?![a-z-])", readme))
+    return sorted(option for option in found - {"--version"} if not re.search(option + r"(?![a-z-])", page))
 
 
 def main():
@@ -104,7 +104,7 @@ def main():
             checked += len(found)
             faults += [f"{document.relative_to(root)}:{number}: {name}: {fault}" for name, fault in found if fault]
 
-    faults += [f"README.md: option {option} is not named" for option in unnamed_options(root)]
+    faults += [f"docs/command-line.md: option {option} is not named" for option in unnamed_options(root)]
     print("\n".join(faults) or f"{checked} links and names: all exist")
     return 1 if faults or not checked else 0
 
