@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kernels/index.h"
 #include "sim/bodies/node_pose.h"
@@ -34,6 +35,18 @@ std::vector<Matrix3d> axis_turns() {
 bool is_below(const Rig& rig, Index node, Index above) {
   while (node != kNone && node != above) node = rig.parent[at(node)];
   return node == above;
+}
+
+/// The shortest turn from one direction to another; for opposite ones, half a turn about any axis
+/// across them. Eigen's FromTwoVectors is not used, since it takes the compiler ten seconds.
+Matrix3d shortest_turn(const Vector3d& from, const Vector3d& to) {
+  const Vector3d a = from.normalized(), b = to.normalized();
+  const double cosine = a.dot(b);
+  if (cosine < -1 + 1e-12)
+    return Eigen::AngleAxisd(std::numbers::pi, a.unitOrthogonal()).toRotationMatrix();
+  const double twice_w = std::sqrt(2 * (1 + cosine));
+  const Vector3d axis = (1 / twice_w) * a.cross(b);
+  return Quaterniond(twice_w / 2, axis.x(), axis.y(), axis.z()).toRotationMatrix();
 }
 
 /// Everything about two skeletons that does not change over time.
@@ -132,7 +145,7 @@ class Retarget {
       const Vector3d wanted = joint_place(p) - joint_place(above);
       const Vector3d has = node_place(p) - node_place(above);
       if (is_limb_end && wanted.norm() > 0 && has.norm() > 0)
-        alignment_[above] = Quaterniond::FromTwoVectors(has, wanted).toRotationMatrix();
+        alignment_[above] = shortest_turn(has, wanted);
     }
 
     // A hand, and what is in it, keeps to its forearm.

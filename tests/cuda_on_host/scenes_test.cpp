@@ -63,6 +63,7 @@ class DeviceRuns : public ::testing::Test {
   ~DeviceRuns() override { settings() = before_; }
   void compare(const Case& given, const Outcome& expected, const Settings& set) {
     settings() = set;
+    settings().devices = before_.devices;
     const Outcome found = run(Build::cuda32, given);
     const auto differ = std::ranges::mismatch(expected.hashes, found.hashes);
     EXPECT_TRUE(differ.in1 == expected.hashes.end())

@@ -103,8 +103,9 @@ void box_corner(CaseRun& run) {
   TriangleMesh box = make_box({0.2, 0.2, 0.2}, 0.2);
 
   // The space diagonal points up.
-  const auto turn =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitY());
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(std::acos(1 / std::numbers::sqrt3), Eigen::Vector3d(-1, 0, 1).normalized())
+          .toRotationMatrix();
   for (Vec3d& p : box.positions) p = from_eigen(turn * to_eigen(p));
 
   scene->obstacles = {make_body(box, {})};

@@ -51,7 +51,9 @@ constexpr int kCudaVersion = 13000, kMajor = 9, kMinor = 0;
 constexpr std::size_t kMemory = std::size_t{8} << 30;
 
 cudaError_t check_ordinal(int device) {
-  return device == 0 ? cudaSuccess : cuda_on_host::fail(cudaErrorInvalidDevice);
+  return device == 0 && cuda_on_host::settings().devices == 1
+             ? cudaSuccess
+             : cuda_on_host::fail(cudaErrorInvalidDevice);
 }
 
 int processors() { return static_cast<int>(cuda_on_host::settings().processors); }
@@ -59,8 +61,8 @@ int processors() { return static_cast<int>(cuda_on_host::settings().processors);
 }  // namespace
 
 cudaError_t cudaGetDeviceCount(int* count) {
-  *count = 1;
-  return cudaSuccess;
+  *count = static_cast<int>(cuda_on_host::settings().devices);
+  return *count > 0 ? cudaSuccess : cuda_on_host::fail(cudaErrorNoDevice);
 }
 cudaError_t cudaGetDevice(int* device) {
   *device = 0;

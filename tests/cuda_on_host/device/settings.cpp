@@ -27,11 +27,13 @@ Settings from_environment() {
   s.order = order_from_environment();
   s.seed = number("CUDA_ON_HOST_SEED", s.seed);
   s.turns = static_cast<unsigned>(number("CUDA_ON_HOST_TURNS", s.turns));
+  s.devices = static_cast<unsigned>(number("CUDA_ON_HOST_DEVICES", s.devices));
   s.processors = static_cast<unsigned>(number("CUDA_ON_HOST_PROCESSORS", s.processors));
   s.resident = static_cast<unsigned>(number("CUDA_ON_HOST_RESIDENT", s.resident));
   s.poison = static_cast<unsigned char>(number("CUDA_ON_HOST_POISON", s.poison));
   s.deferred = number("CUDA_ON_HOST_DEFERRED", 0) != 0;
   s.guarded = number("CUDA_ON_HOST_GUARDED", 0) != 0;
+  if (s.devices > 1) complain("CUDA_ON_HOST_DEVICES is %u, expected 0 or 1", s.devices);
   if (s.turns == 0 || s.processors == 0 || s.resident == 0)
     complain("CUDA_ON_HOST_TURNS, _PROCESSORS and _RESIDENT must be at least 1");
   return s;

@@ -14,6 +14,7 @@ struct Settings {
   Order order = Order::forward;  ///< CUDA_ON_HOST_ORDER=forward|backward|random
   std::uint64_t seed = 1;        ///< CUDA_ON_HOST_SEED: of all that is random here
   unsigned turns = 4;            ///< CUDA_ON_HOST_TURNS: blocks that take turns, in random order
+  unsigned devices = 0;          ///< CUDA_ON_HOST_DEVICES=1: the device is there
   unsigned processors = 3;       ///< CUDA_ON_HOST_PROCESSORS: multiprocessors of the device
   unsigned resident = 2;         ///< CUDA_ON_HOST_RESIDENT: blocks that each of them holds at once
   unsigned char poison = 0xcb;   ///< CUDA_ON_HOST_POISON: every byte of fresh memory
