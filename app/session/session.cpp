@@ -280,18 +280,7 @@ void Session::handle(const Change& change) {
   }
 }
 
-/// Only the newest target of a handle matters to the next step.
-void Session::handle(const InputEvent& event) {
-  if (event.kind == InputEvent::Kind::move) {
-    const auto last = std::find_if(pending_.rbegin(), pending_.rend(),
-                                   [&](const InputEvent& e) { return e.handle == event.handle; });
-    if (last != pending_.rend() && last->kind != InputEvent::Kind::release) {
-      last->target = event.target;
-      return;
-    }
-  }
-  pending_.push_back(event);
-}
+void Session::handle(const InputEvent& event) { hands_.post(event, simulator_->time()); }
 
 /// The events and the changes of parameters of the next step, as they will be recorded. The
 /// simulator gets the parameters only here, as in a replay: a value that was tried between two
@@ -308,11 +297,10 @@ Recording::Step Session::next_step() {
   if (!step.parameters.empty()) simulator_->set_parameters(wanted_parameters_);
 
   // Scripted events are recorded with the user's, so a replay does not need the script.
-  step.events = std::exchange(pending_, {});
+  const double time = simulator_->time(), dt = wanted_parameters_.step.time_step;
+  step.events = hands_.events(time, dt);
   if (script_) {
-    for (const InputEvent& event :
-         script_->events(simulator_->time(), wanted_parameters_.step.time_step))
-      step.events.push_back(event);
+    for (const InputEvent& event : script_->events(time, dt)) step.events.push_back(event);
   }
   return step;
 }
@@ -325,7 +313,7 @@ void Session::start_script() {
 
 void Session::release_scripted_handles() {
   for (const HandleState& handle : simulator_->handles())
-    if (handle.id >= kFirstScriptedHandle) pending_.push_back(release_of(handle.id));
+    if (handle.id >= kFirstScriptedHandle) hands_.post(release_of(handle.id), simulator_->time());
 }
 
 void Session::advance() {
@@ -490,7 +478,7 @@ void Session::make_again(const Recording::Step& step) {
 /// The hands of a state that was gone to, and what is to be said of it.
 void Session::settle() {
   // A scene's own grabs go on only where they are switched on now.
-  pending_.clear();
+  hands_.clear();
   if (scripted_)
     start_script();
   else
@@ -533,10 +521,7 @@ void Session::read_positions(PublishedState& state) {
   state.positions = positions_;
 
   // Events on their way count already: who sees a jump in time must not lose a grab made after it.
-  for (const InputEvent& event : pending_)
-    apply_event(state.handles, event, [](const InputEvent& grab) {
-      return HandleState{handle_of(grab), grab.target};
-    });
+  hands_.apply_to(state.handles);
 }
 
 /// A fast solver does not publish every step: nobody sees more than the screen shows.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/common/element_names.h"
+#include "app/session/hand_paths.h"
 #include "app/session/history.h"
 #include "app/session/triple_buffer.h"
 #include "sim/scene/input.h"
@@ -196,7 +197,7 @@ class Session {
 
   // Only the solver thread uses these.
   bool playing_ = false, stopping_ = false, scripted_ = false, single_ = false;
-  std::vector<InputEvent> pending_;  ///< events for the next step
+  HandPaths hands_;  ///< events for the steps to come
   std::optional<ScriptedInput> script_;
   Parameters wanted_parameters_;    ///< for the next step
   Parameters recorded_parameters_;  ///< in force at the end of the recording
