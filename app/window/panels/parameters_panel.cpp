@@ -2,6 +2,8 @@
 // range, scale and tooltips.
 #include <imgui_internal.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -26,8 +28,20 @@ bool open_at_first(const std::string& group) {
          group == "impact_zones";
 }
 
-/// The group's name as a heading: "impact_zones" becomes "Impact zones".
+/// The group's name as a heading, in the words of who makes garments; one that has none there is
+/// "impact_zones", as "Impact zones".
 std::string heading(const std::string& group) {
+  static const std::map<std::string_view, const char*> kHeadings = {
+      {"step", "Time step"},
+      {"material", "Fabric"},
+      {"proximity", "Contact"},
+      {"implicit", "Solver"},
+      {"broad_phase", "Search for collisions"},
+      {"impact_zones", "Impacts"},
+      {"ccd", "Collision test"},
+      {"grab", "Hands"},
+  };
+  if (const auto found = kHeadings.find(group); found != kHeadings.end()) return found->second;
   std::string text = group;
   for (char& c : text) {
     if (c == '_') c = ' ';
@@ -78,6 +92,34 @@ void offer_reset(const ParameterInfo& info, ParameterEdits& edits) {
   ImGui::EndPopup();
 }
 
+/// Draws where the value of the last item lies in its range, as a line along the lower edge: a grip
+/// would cover the number.
+void draw_level(const ParameterInfo& info, double value) {
+  const bool logarithmic = info.logarithmic && info.minimum > 0;
+  const auto place = [&](double x) { return logarithmic ? std::log(x) : x; };
+  const double low = place(info.minimum), high = place(info.maximum);
+  const double share = std::clamp((place(value) - low) / (high - low), 0., 1.);
+  const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
+  const float rounding = ImGui::GetStyle().FrameRounding, height = 3;
+  const float left = least.x + rounding, right = most.x - rounding;
+  const ImU32 colour =
+      ImGui::GetColorU32(ImGui::IsItemActive() ? ImGuiCol_SliderGrabActive : ImGuiCol_SliderGrab);
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      {left, most.y - height},
+      {left + std::max(2.f, static_cast<float>(share) * (right - left)), most.y}, colour);
+}
+
+/// A slider without a grip, or a field for a number that is typed (Ctrl+click).
+template <class Slider>
+bool with_level(const ParameterInfo& info, const double& value, const Slider& slider) {
+  ImGui::PushStyleColor(ImGuiCol_SliderGrab, IM_COL32_BLACK_TRANS);
+  ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, IM_COL32_BLACK_TRANS);
+  const bool moved = slider();
+  ImGui::PopStyleColor(2);
+  if (!ImGui::TempInputIsActive(ImGui::GetItemID())) draw_level(info, value);
+  return moved;
+}
+
 /// A slider with the parameter's range, scale and unit. True when it moved.
 bool edit_number(const ParameterInfo& info, double& value) {
   const ImGuiSliderFlags flags =
@@ -88,15 +130,19 @@ bool edit_number(const ParameterInfo& info, double& value) {
   if (info.field.kind == ParameterInfo::Kind::whole) {
     format = "%d" + format;
     int whole = static_cast<int>(value);
-    const bool moved = ImGui::SliderInt("##value", &whole, static_cast<int>(info.minimum),
-                                        static_cast<int>(info.maximum), format.c_str(), flags);
-    value = whole;
-    return moved;
+    return with_level(info, value, [&] {
+      const bool moved = ImGui::SliderInt("##value", &whole, static_cast<int>(info.minimum),
+                                          static_cast<int>(info.maximum), format.c_str(), flags);
+      value = whole;
+      return moved;
+    });
   }
 
   format = (info.maximum < 1 && !info.logarithmic ? "%.5f" : "%.4g") + format;
-  return ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &info.minimum, &info.maximum,
-                             format.c_str(), flags);
+  return with_level(info, value, [&] {
+    return ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &info.minimum,
+                               &info.maximum, format.c_str(), flags);
+  });
 }
 
 /// A list of names. True when another one was chosen.
