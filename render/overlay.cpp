@@ -123,8 +123,18 @@ std::vector<OverlayVertex> overlay_triangles(const World& world, const Frame& fr
     builder.line(c, a, 2, kMark);
   }
 
-  // Pins are small balls.
+  // Pins are balls, those of the scene small.
   for (Index v : frame.marked_vertices) builder.ball(at(frame, v), 3, kPin);
+  for (const Vec3d& pin : frame.pins) {
+    builder.ball(pin, 5, kPin);
+    builder.ring(builder.lifted(pin, 8), 5, 7, kHover);
+  }
+
+  // Lines along the cloth are light, with a dark one below them for light cloth.
+  for (const LineSegment& line : frame.outlines) {
+    builder.line(builder.lifted(line.a, 2), builder.lifted(line.b, 2), 3, kRim);
+    builder.line(builder.lifted(line.a, 3), builder.lifted(line.b, 3), 1.5, kHover);
+  }
 
   // Every handle is a line from the cloth to its target, coloured by how hard it pulls.
   for (const HandleState& handle : frame.handles) {

@@ -38,6 +38,10 @@ struct DropLine {
   Vec3d from, to;  ///< [m]
 };
 
+struct LineSegment {
+  Vec3d a, b;  ///< [m]
+};
+
 /// The content of a picture. The spans must stay valid during draw() only.
 struct Frame {
   std::span<const Vec3f> positions;            ///< all vertices of the world [m]
@@ -47,8 +51,10 @@ struct Frame {
   std::span<const Index> marked_vertices{};    ///< global vertices shown as dots (pins)
   /// Global vertices that are stitched and not sewn yet: lines, coloured by their lengths.
   std::span<const std::array<Index, 2>> stitches{};
-  std::span<const Vec3f> hover{};          ///< points under the pointer, drawn as rings [m]
-  std::span<const DropLine> drop_lines{};  ///< of hands, which show how deep they are in the scene
+  std::span<const Vec3f> hover{};           ///< points under the pointer, drawn as rings [m]
+  std::span<const Vec3d> pins{};            ///< where the user pinned the cloth [m]
+  std::span<const LineSegment> outlines{};  ///< along the cloth, such as the rim of a held patch
+  std::span<const DropLine> drop_lines{};   ///< of hands, which show how deep they are in the scene
   ViewMode view = ViewMode::shaded;
   double strain_range = 0.1;  ///< strain that gets the last colour of the scale
 };

@@ -88,7 +88,7 @@ void Drag::begin_handle(int id, const CursorRay& ray, bool add_to_selection) {
 }
 
 void Drag::pin(const ClothHit& hit) {
-  if (Handle* handle = get(add(hit))) handle->parked = true;
+  if (Handle* handle = get(add(hit))) handle->parked = handle->pin = true;
 }
 
 void Drag::follow_camera(const CursorRay& ray) {
@@ -210,8 +210,11 @@ void Drag::restore(std::span<const HandleState> held) {
   const std::vector<Handle> had = std::exchange(handles_, {});
   active_ = 0;
   events_.clear();
-  for (const HandleState& handle : held)
-    if (handle.id < kFirstScriptedHandle) handles_.push_back({handle, true});
+  for (const HandleState& handle : held) {
+    if (handle.id >= kFirstScriptedHandle) continue;
+    const auto before = std::ranges::find(had, handle.id, &Handle::id);
+    handles_.push_back({handle, true, false, before != had.end() && before->pin});
+  }
 
   // A grab may be on its way to the solver while the news of the jump is on its way here, so
   // handles that are unknown there are released.

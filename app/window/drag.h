@@ -26,6 +26,7 @@ struct ClothHit {
 /// A held patch. It is in the hand or parked; a parked one keeps pulling by itself.
 struct Handle : HeldHandle {
   bool parked = false, selected = false;
+  bool pin = false;  ///< made by Drag::pin: drawn as a pin wherever it is
 };
 
 /// The hands of the user. Actions queue events for the session, which take_events() returns.

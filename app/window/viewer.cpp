@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/common/element_names.h"
+#include "app/window/patch_outline.h"
 #include "app/window/screenshot.h"
 #include "app/window/theme.h"
 #include "render/ui_painter.h"
@@ -285,6 +286,20 @@ void Viewer::draw_scene() {
   scene_frame.marked_vertices = pins;
   scene_frame.hover = hover;
   scene_frame.stitches = stitches_;
+
+  // The patch in the hand has its rim and, within, where the pull is half of that at the hit.
+  std::vector<LineSegment> patch;
+  if (const Handle* held = drag_.find(drag_.active())) {
+    for (const double share : {0., 0.5})
+      for (const LineSegment& line :
+           patch_outline(world_, session_->state().positions, *held, share))
+        patch.push_back(line);
+  }
+  scene_frame.outlines = patch;
+  std::vector<Vec3d> user_pins;
+  for (const Handle& handle : drag_.handles())
+    if (handle.pin && handle.parked) user_pins.push_back(hit_point(handle));
+  scene_frame.pins = user_pins;
   const std::optional<DropLine> drop = drop_line();
   if (drop) scene_frame.drop_lines = {&*drop, 1};
   scene_frame.view = state_.view;
@@ -317,6 +332,7 @@ std::vector<HandleState> Viewer::handle_states() const {
   const PublishedState& state = session_->state();
   std::vector<HandleState> list;
   for (const Handle& handle : drag_.handles()) {
+    if (handle.pin && handle.parked) continue;  // drawn as a pin
     HandleState shown_handle{handle, hit_point(handle)};
     for (const HandleState& held : state.handles) {
       if (held.id == handle.id) shown_handle.saturation = held.saturation;

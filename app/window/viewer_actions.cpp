@@ -119,13 +119,13 @@ bool Viewer::act_on_hands(Action action, double amount) {
       drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
       drag_.change_radius(amount);
       edits_.set(*find_parameter("grab.radius"), drag_.radius(), true);
-      tell("Size of the grabbed patch: " + std::to_string(drag_.radius()) + " m");
+      tell("Radius of the patch: " + rounded_text(100 * drag_.radius()) + " cm");
       return true;
     case Action::grab_stiffness:
       drag_.set_defaults(edits_.values().grab.radius, edits_.values().grab.stiffness);
       drag_.change_stiffness(amount);
       edits_.set(*find_parameter("grab.stiffness"), drag_.stiffness(), true);
-      tell("Strength of the pull: " + std::to_string(std::lround(drag_.stiffness())) + " N/m");
+      tell("Strength of the pull: " + rounded_text(drag_.stiffness()) + " N/m");
       return true;
     default:
       return false;

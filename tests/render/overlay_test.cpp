@@ -27,6 +27,24 @@ TEST(Overlay, StitchesAreLinesUntilTheyAreShutAndRedderTheWiderTheyAre) {
   EXPECT_LT(wide[0].colour[1], narrow[0].colour[1]);
 }
 
+TEST(Overlay, PinsAndOutlinesLieOnTheSideOfTheEye) {
+  const World world;
+  Frame frame;
+  const Vec3d pin{0, 0.1, 0};
+  const LineSegment line{{0, 0, 0}, {0, 0.1, 0}};
+  const Camera camera;
+  for (const bool is_pin : {true, false}) {
+    frame.pins = {&pin, is_pin ? 1u : 0u};
+    frame.outlines = {&line, is_pin ? 0u : 1u};
+    const auto drawn = overlay_triangles(world, frame, camera, 600);
+    ASSERT_FALSE(drawn.empty());
+    for (const OverlayVertex& v : drawn) {
+      const Vec3d p = convert<double>(v.position);
+      EXPECT_GT(dot(p - Vec3d{0, 0.05, 0}, -1.0 * camera.forward()), -0.06);
+    }
+  }
+}
+
 TEST(Overlay, AHandHasAPlumbLineThatEndsInALevelSpot) {
   const World world;
   Frame frame;

@@ -220,6 +220,19 @@ TEST(Drag, AfterAJumpInTimeOnlyHeldHandlesRemain) {
   EXPECT_EQ(events[0].handle, 2);
 }
 
+TEST(Drag, PinsStayPinsThroughAJumpInTime) {
+  Drag drag;
+  drag.pin(hit(0, 0, 0));
+  drag.begin(ray(0, 0), hit(0.1, 0, 0));
+  drag.park();
+  std::vector<HandleState> held;
+  for (const Handle& handle : drag.handles()) held.push_back({handle, handle.target});
+  drag.restore(held);
+  ASSERT_EQ(drag.handles().size(), 2u);
+  EXPECT_TRUE(drag.handles()[0].pin);
+  EXPECT_FALSE(drag.handles()[1].pin);
+}
+
 TEST(Drag, ANewGrabGetsAFreeNumber) {
   Drag drag;
   for (int k = 0; k < 1200; ++k) drag.pin(hit(0, 0, 0));
