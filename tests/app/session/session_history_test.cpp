@@ -4,15 +4,17 @@
 
 #include "tests/app/session/session_support.h"
 #include "tests/support/sewn_sheets.h"
-#include "tests/support/small_scenes.h"
 
 namespace icloth {
 namespace {
 
 using testing::event;
 using testing::FakeOptions;
+using testing::grab_of_face;
 using testing::make;
+using testing::make_real;
 using testing::replay;
+using testing::replay_with_real;
 using testing::step;
 using testing::two_sheets;
 using testing::wait_for_step;
@@ -191,37 +193,6 @@ TEST(SessionHistory, GoingBackUndoesThatAStepWasPassedOver) {
 }
 
 // ---- with a real solver ------------------------------------------------------------------------
-
-/// Two sheets that start closer than the thickness, over a ball, and a hand of the scene's own.
-std::shared_ptr<const Scene> real_scene() {
-  auto scene = std::make_shared<Scene>();
-  scene->name = "test";
-  scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 120), {0.01, 0.112, 0.02}));
-  scene->cloths.push_back(testing::make_sheet(testing::lying(0.3, 120), {0, 0.1123, 0}));
-  scene->obstacles.push_back(testing::make_obstacle(make_sphere(0.1, 320), {}));
-  scene->parameters.implicit.integrator = Integrator::bdf2;
-  ScriptedGrab grab;
-  grab.vertex = 3;
-  grab.release = 10;
-  grab.path = {{0, {0.1, 0.2, 0}}, {1, {0.3, 0.4, 0.1}}};
-  scene->input.push_back(grab);
-  return scene;
-}
-
-std::unique_ptr<Session> make_real() {
-  return std::make_unique<Session>(make_simulator(Build::cpu32, real_scene()), SessionOptions{});
-}
-
-std::uint64_t replay_with_real(const Recording& recording) {
-  const auto simulator = make_simulator(Build::cpu32, real_scene());
-  return replay(recording, *simulator);
-}
-
-InputEvent grab_of_face(int handle, Index face, Vec3d target) {
-  InputEvent grab = event(InputEvent::Kind::grab, handle, target);
-  grab.face = face;
-  return grab;
-}
 
 void go_back(Session& session, std::size_t count) {
   const std::uint64_t rewinds = session.state().rewinds + 1;

@@ -10,6 +10,7 @@
 #include "app/common/headless.h"
 #include "app/session/session.h"
 #include "tests/support/fake_simulator.h"
+#include "tests/support/small_scenes.h"
 
 namespace icloth::testing {
 
@@ -67,6 +68,38 @@ inline std::uint64_t replay(const Recording& recording, FakeOptions options = {}
 inline std::unique_ptr<Session> make(FakeOptions options = {}, SessionOptions session = {}) {
   session.scene = "fake";
   return std::make_unique<Session>(std::make_unique<FakeSimulator>(options), session);
+}
+
+/// For a real solver: two sheets that start closer than the thickness, over a ball, and a hand of
+/// the scene's own.
+inline std::shared_ptr<const Scene> real_scene() {
+  auto scene = std::make_shared<Scene>();
+  scene->name = "test";
+  scene->cloths.push_back(make_sheet(lying(0.3, 120), {0.01, 0.112, 0.02}));
+  scene->cloths.push_back(make_sheet(lying(0.3, 120), {0, 0.1123, 0}));
+  scene->obstacles.push_back(make_obstacle(make_sphere(0.1, 320), {}));
+  scene->parameters.implicit.integrator = Integrator::bdf2;
+  ScriptedGrab grab;
+  grab.vertex = 3;
+  grab.release = 10;
+  grab.path = {{0, {0.1, 0.2, 0}}, {1, {0.3, 0.4, 0.1}}};
+  scene->input.push_back(grab);
+  return scene;
+}
+
+inline std::unique_ptr<Session> make_real() {
+  return std::make_unique<Session>(make_simulator(Build::cpu32, real_scene()), SessionOptions{});
+}
+
+inline std::uint64_t replay_with_real(const Recording& recording) {
+  const auto simulator = make_simulator(Build::cpu32, real_scene());
+  return replay(recording, *simulator);
+}
+
+inline InputEvent grab_of_face(int handle, Index face, Vec3d target) {
+  InputEvent grab = event(InputEvent::Kind::grab, handle, target);
+  grab.face = face;
+  return grab;
 }
 
 }  // namespace icloth::testing
