@@ -104,6 +104,27 @@ void draw_quantities(const StepReport& r) {
   row("smallest gap", "%.3f mm", 1000 * r.min_gap);
 }
 
+/// Draws the slowest steps of the run and what they had more of than others; a click goes to the
+/// state before a step, from where it can be made again and watched.
+void draw_slowest(PanelContext& context) {
+  ImGui::TextUnformatted("Slowest steps");
+  if (!ImGui::BeginTable("##slowest", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit))
+    return;
+  for (const StepReport& report : context.stages.slowest()) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    const std::string step = std::to_string(report.step);
+    if (ImGui::Selectable(step.c_str(), false, ImGuiSelectableFlags_SpanAllColumns))
+      context.session.go(static_cast<std::size_t>(std::max<Count>(0, report.step - 1)));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("click: go to the state before this step");
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%.3g ms", report.ms_total);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(why_slow(report, context.stages).c_str());
+  }
+  ImGui::EndTable();
+}
+
 /// Draws one line over the history on a logarithmic axis; zeros are left out.
 void draw_log_line(const PanelContext& context, const char* name,
                    double (*value)(const StepReport&), ImU32 tint) {
@@ -217,6 +238,8 @@ void draw_statistics(PanelContext& context) {
     draw_quantities(*report);
     ImGui::EndTable();
   }
+
+  draw_slowest(context);
 
   // The history of four numbers tells how the run goes.
   ImGui::Spacing();
