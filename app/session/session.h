@@ -30,6 +30,7 @@ struct SessionOptions {
   std::size_t history_bytes = 256u << 20;  ///< memory for stepping back
   bool real_time = true;                   ///< never faster than time_step per wall second
   std::vector<FileLayout> layouts;         ///< of the scene's files, for the names of vertices
+  std::vector<Recording::Step> ahead;      ///< a recorded run, which go() makes again
   std::string refusal;                     ///< why nothing may run (bad start state); empty: may
   /// Called on the solver's thread when a new state is there; null: nobody waits for it.
   std::function<void()> published;

@@ -25,6 +25,8 @@ class ParameterEdits {
   void set(const ParameterInfo& info, double value, bool continued = false);
   /// Takes over all values, each within its range, as one change.
   void set_all(const Parameters& values);
+  /// Shows the values that a recorded run has led to; there is nothing to undo about them.
+  void follow(const Parameters& values) { values_ = values; }
   void reset(const ParameterInfo& info) { set(info, start_value(info)); }
   /// These return false when there is nothing to undo or redo.
   bool undo();

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/common/options.h"
+#include "sim/scene/input.h"
 
 namespace icloth {
 
@@ -13,8 +15,9 @@ struct ViewOptions {
   std::string screenshot_folder;  ///< F12 writes here; empty: the current folder
   std::string vertices = "auto";  ///< upload path of vertices: auto or host
   bool choose = false;            ///< ask for a scene before the first one is opened
-  bool play = true;               ///< start running
-  bool play_script = false;       ///< apply the scene's scripted grabs as well
+  std::vector<Recording::Step> recorded;  ///< a run of the scene, to be made again at the start
+  bool play = true;                       ///< start running
+  bool play_script = false;               ///< apply the scene's scripted grabs as well
   int width = 1280, height = 800;
 };
 

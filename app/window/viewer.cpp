@@ -33,10 +33,12 @@ std::string start_sentence(std::size_t pairs, const std::vector<std::string>& re
   return text;
 }
 
-std::unique_ptr<Session> make_session(const SimulationOptions& options, Build build,
+std::unique_ptr<Session> make_session(const ViewOptions& view, Build build,
                                       const std::shared_ptr<const Scene>& scene,
                                       const SceneOrigin& origin, const std::string& refusal) {
+  const SimulationOptions& options = view.simulation;
   SessionOptions session;
+  session.ahead = view.recorded;
   session.scene = scene->source.empty() ? options.scene : scene->source;
   session.overrides = scene_overrides(options);
   session.layouts = origin.layouts;
@@ -84,11 +86,15 @@ Viewer::Viewer(Window& window, Ui& ui, const ViewOptions& options, Build build,
   // The parts follow the machine, then the scene and the options.
   set_thread_count(threads_);
   renderer_.set_quality(software_ ? Quality::draft : Quality::interactive);
-  session_ = make_session(options_.simulation, build_, scene_, origin_,
+  session_ = make_session(options_, build_, scene_, origin_,
                           start_sentence(start_intersections_.size(), start_remedies_));
   if (!scene_->cameras.empty()) camera_ = Camera(scene_->cameras.front());
   if (options_.play_script) session_->set_scripted(true);
-  if (options_.play) session_->play();
+  if (!options_.play) return;
+  if (options_.recorded.empty())
+    session_->play();
+  else
+    session_->go(options_.recorded.size());
 }
 
 std::optional<std::string> Viewer::run() {
@@ -174,6 +180,7 @@ void Viewer::take_state() {
   if (state.rewinds != seen_rewinds_) {
     seen_rewinds_ = state.rewinds;
     drag_.restore(state.handles);
+    if (!options_.recorded.empty()) edits_.follow(state.parameters);
     stages_.cut(state.step);
   }
 

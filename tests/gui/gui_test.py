@@ -270,6 +270,24 @@ def check_end(window, program):
     assert done.returncode == 0, f"the session does not repeat: {done.stdout}{done.stderr}"
 
 
+def check_recording(program, folder, recording):
+    """A recording opens in the window, which makes its steps again and stays at their end."""
+    with open(recording) as file:
+        steps = len(json.load(file)["steps"])
+    window = Window(program, os.path.join(folder, "recording"), [recording])
+    try:
+        window.wait(lambda s: s["step"] == steps, f"step {steps}", START_TIMEOUT)
+        window.find_window()
+        time.sleep(1)
+        assert window.next_status()["step"] == steps, "it goes on only when asked to"
+        window.key("Left")
+        window.wait(lambda s: s["step"] == steps - 1, "one step back")
+        window.quit()
+    finally:
+        window.close()
+    print(f"a recording of {steps} steps was opened")
+
+
 def check_no_display(program):
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     done = subprocess.run([program, "view", *SCENE, "--device", "cpu"], env=environment, text=True,
@@ -315,6 +333,7 @@ def main():
         check_end(window, program)
     finally:
         window.close()
+    check_recording(program, folder, window.recording)
     print("passed; pictures in", folder)
 
 

@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "app/common/headless.h"
+#include "app/common/recording_file.h"
 #include "app/window/start_screen.h"
 #include "app/window/viewer.h"
 #include "render/gl_context.h"
 #include "sim/files/error.h"
 #include "sim/garment/open_scene.h"
+#include "sim/scene/input.h"
 
 namespace icloth {
 namespace {
@@ -37,6 +40,19 @@ ViewOptions options_for(const ViewOptions& first, const std::string& scene) {
   options.simulation.preset.clear();
   options.simulation.repair_start = false;
   return options;
+}
+
+/// The build that made a recording, on which its steps give the same bits.
+Build recorded_build(const Recording& recording, const std::string& path) {
+  for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32}) {
+    std::string reason;
+    if (build_name(build) != recording.build) continue;
+    if (build_available(build, &reason)) return build;
+    throw InputError(path + ": it was recorded on " + recording.build +
+                     ", which is not available: " + reason);
+  }
+  throw InputError(path + ": build: \"" + recording.build +
+                   "\" is none, expected cpu32, cpu64 or cuda32");
 }
 
 /// One window, in which one scene after the other is opened.
@@ -69,6 +85,34 @@ class WindowProgram {
  private:
   /// Opens a scene and runs it; returns the name of the next one, none where the window was closed.
   std::optional<std::string> open(const ViewOptions& options) {
+    if (is_recording(options.simulation.scene)) return open_recording(options);
+    return open_scene_of(options, build_, {});
+  }
+
+  /// Opens the scene of a recording on its build, and makes its steps again.
+  std::optional<std::string> open_recording(const ViewOptions& options) {
+    const std::string& path = options.simulation.scene;
+    const bool is_set = !options.simulation.preset.empty() || options.simulation.repair_start ||
+                        options.simulation.overrides.size() > 1;  // kWindowSetting is the first
+    if (is_set)
+      throw InputError(path +
+                       ": --set, --preset and --repair-start do not go with a recording, "
+                       "which has settings of its own");
+    const Recording recording = load_recording(path);
+    const Build build = recorded_build(recording, path);
+    ViewOptions with_run = options;
+    with_run.simulation.scene = recording.scene;
+    with_run.simulation.overrides = recording.overrides;
+    with_run.simulation.preset.clear();
+    with_run.simulation.repair_start = false;
+    with_run.recorded = recording.steps;
+    return open_scene_of(with_run, build,
+                         [&](const Scene& scene) { check_recording(recording, scene, path); });
+  }
+
+  /// `check` throws what is wrong with a scene; empty: nothing is.
+  std::optional<std::string> open_scene_of(const ViewOptions& options, Build build,
+                                           const std::function<void(const Scene&)>& check) {
     auto opening = start_opening(options.simulation);
     const bool is_open = screen_.show(*opening, options.simulation.scene);
     if (!is_open) {
@@ -80,7 +124,8 @@ class WindowProgram {
     // The notes go to the terminal that the window was opened from, and into a panel.
     const std::shared_ptr<const Scene> scene = opening->scene();
     print_notes(opening->origin());
-    Viewer viewer(window_, ui_, options, build_, scene, std::move(opening->origin()));
+    if (check) check(*scene);
+    Viewer viewer(window_, ui_, options, build, scene, std::move(opening->origin()));
     if (options.simulation.scene == last_scene_) viewer.look_from(last_camera_);
     if (const Camera* camera = screen_.chosen_camera()) viewer.look_from(*camera);
     std::optional<std::string> next = viewer.run();

@@ -13,6 +13,7 @@ using testing::FakeOptions;
 using testing::grab_of_face;
 using testing::make;
 using testing::make_real;
+using testing::real_scene;
 using testing::replay;
 using testing::replay_with_real;
 using testing::step;
@@ -289,6 +290,33 @@ TEST(SessionHistory, ReplaysToTheSameBitsWhenSettingsChangedBeforeGoingBack) {
   step(*session, 6);
   session->stop();
   EXPECT_EQ(replay_with_real(session->recording()), session->recording().final_hash);
+}
+
+TEST(SessionHistory, GoesOnFromARunThatWasRecordedBefore) {
+  const auto first = make_real();
+  first->post(grab_of_face(1, 5, {0, 0.25, 0}));
+  step(*first, 4);
+  first->set("gravity.y", -3);
+  step(*first, 4);
+  first->stop();
+  const Recording recorded = first->recording();
+
+  // All of it lies ahead, and its end has its settings and its hand.
+  SessionOptions options;
+  options.ahead = recorded.steps;
+  Session second(make_simulator(Build::cpu32, real_scene()), options);
+  EXPECT_EQ(second.state().ahead, 8u);
+  second.go(8);
+  ASSERT_TRUE(wait_until(second, [](const auto& s) { return s.step == 8 && s.rewinds > 0; }));
+  EXPECT_EQ(second.state().report.state_hash, recorded.final_hash);
+  EXPECT_DOUBLE_EQ(second.state().parameters.gravity.y, -3);
+  EXPECT_EQ(second.state().handles.size(), 1u);
+
+  // What comes then is one run with it.
+  step(second, 2);
+  second.stop();
+  EXPECT_EQ(second.recording().steps.size(), 10u);
+  EXPECT_EQ(replay_with_real(second.recording()), second.recording().final_hash);
 }
 
 TEST(SessionHistory, ReplaysToTheSameBitsAfterReset) {
