@@ -15,4 +15,10 @@ bool is_recording(const std::string& path) {
   }
 }
 
+Build recorded_build(const Recording& recording) {
+  for (const Build build : {Build::cpu64, Build::cuda32})
+    if (build_name(build) == recording.build) return build;
+  return Build::cpu32;  // no other name is read
+}
+
 }  // namespace icloth

@@ -14,12 +14,6 @@ namespace {
 constexpr std::size_t kMaxReports = 4096;
 constexpr auto kPublishInterval = std::chrono::milliseconds(4);
 
-bool is_same(const Parameters& a, const Parameters& b) {
-  return std::ranges::all_of(parameter_table(), [&](const ParameterInfo& info) {
-    return get_parameter(a, info) == get_parameter(b, info);
-  });
-}
-
 InputEvent release_of(int handle) {
   InputEvent event;
   event.kind = InputEvent::Kind::release;
@@ -79,7 +73,8 @@ Session::Session(std::unique_ptr<Simulator> simulator, SessionOptions options)
   recording_.scene = options_.scene;
   recording_.build = build_name(simulator_->build());
   recording_.overrides = options_.overrides;
-  ahead_ = options_.ahead;
+  follows_run_ = !options_.ahead.empty();
+  ahead_ = std::move(options_.ahead);
   start_.snapshot = simulator_->snapshot();
   start_.parameters = recorded_parameters_;
   simulator_->positions(positions_);
@@ -282,6 +277,7 @@ void Session::handle(const Change& change) {
   if (!info) return note("There is no parameter " + change.parameter + ".");
   try {
     set_parameter(wanted_parameters_, *info, change.value);
+    follows_run_ = false;
   } catch (const std::exception& error) {
     note(error.what(), true);
   }
@@ -435,11 +431,9 @@ void Session::travel(std::size_t target, const Run& run) {
   const bool is_on_the_way = made <= run.shared && made <= target && made >= nearest.recorded_steps;
   if (!is_on_the_way) restore(HistoryEntry(nearest), run);
 
-  // Settings that were not touched since follow the run; others are those of the steps to come.
-  const bool follows = is_same(wanted_parameters_, recorded_parameters_) && made <= target;
   while (recording_.steps.size() < target && !has_mail())
     make_again(run.steps[recording_.steps.size()]);
-  if (follows) wanted_parameters_ = recorded_parameters_;
+  if (follows_run_) wanted_parameters_ = recorded_parameters_;
   ahead_.assign(run.steps.begin() + static_cast<std::ptrdiff_t>(recording_.steps.size()),
                 run.steps.end());
   settle();

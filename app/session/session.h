@@ -201,6 +201,7 @@ class Session {
   HandPaths hands_;  ///< events for the steps to come
   std::optional<ScriptedInput> script_;
   Parameters wanted_parameters_;    ///< for the next step
+  bool follows_run_ = false;        ///< a loaded run decides the settings, until one is touched
   Parameters recorded_parameters_;  ///< in force at the end of the recording
   Recording recording_;
   std::vector<Recording::Step> ahead_;  ///< taken back, of the same run

@@ -10,11 +10,10 @@
 
 namespace icloth {
 
-/// The line on the cloth along which a hand pulls with `share` (0…1) of its pull at the hit. A
-/// patch is round in the rest shape (sim/hands.h), so that its line follows the folds; it is empty
-/// where the patch is smaller than a face. `positions`: all vertices of the world [m]; 0 is the
-/// rim.
+/// The lines on the cloth along which a hand pulls with each of the `shares` (0…1) of its pull at
+/// the hit; 0 is the rim. A patch is round in the rest shape (sim/hands.h), so that they follow the
+/// folds; a line within one face has no part. `positions`: all vertices of the world [m].
 std::vector<LineSegment> patch_outline(const World& world, std::span<const Vec3f> positions,
-                                       const HeldHandle& handle, double share = 0);
+                                       const HeldHandle& handle, std::span<const double> shares);
 
 }  // namespace icloth

@@ -295,14 +295,12 @@ void Viewer::draw_scene() {
   scene_frame.stitches = stitches_;
 
   // The patch in the hand has its rim and, within, where the pull is half of that at the hit.
+  constexpr double kShares[] = {0, 0.5};
   std::vector<LineSegment> patch;
-  if (const Handle* held = drag_.find(drag_.active())) {
-    for (const double share : {0., 0.5})
-      for (const LineSegment& line :
-           patch_outline(world_, session_->state().positions, *held, share))
-        patch.push_back(line);
-  }
+  if (const Handle* held = drag_.find(drag_.active()))
+    patch = patch_outline(world_, session_->state().positions, *held, kShares);
   scene_frame.outlines = patch;
+
   std::vector<Vec3d> user_pins;
   for (const Handle& handle : drag_.handles())
     if (handle.pin && handle.parked) user_pins.push_back(hit_point(handle));

@@ -27,20 +27,24 @@ TEST(Overlay, StitchesAreLinesUntilTheyAreShutAndRedderTheWiderTheyAre) {
   EXPECT_LT(wide[0].colour[1], narrow[0].colour[1]);
 }
 
-TEST(Overlay, PinsAndOutlinesLieOnTheSideOfTheEye) {
+TEST(Overlay, PinsAndOutlinesAreLiftedTowardsTheEye) {
   const World world;
-  Frame frame;
-  const Vec3d pin{0, 0.1, 0};
-  const LineSegment line{{0, 0, 0}, {0, 0.1, 0}};
   const Camera camera;
+  const Vec3d pin{0, 0.1, 0};
+  const LineSegment line{{0, 0, 0}, {0.1, 0.1, 0}};
   for (const bool is_pin : {true, false}) {
+    Frame frame;
     frame.pins = {&pin, is_pin ? 1u : 0u};
     frame.outlines = {&line, is_pin ? 0u : 1u};
     const auto drawn = overlay_triangles(world, frame, camera, 600);
     ASSERT_FALSE(drawn.empty());
+
+    // Nothing is drawn behind the point that it stands for, where the cloth would hide it.
     for (const OverlayVertex& v : drawn) {
       const Vec3d p = convert<double>(v.position);
-      EXPECT_GT(dot(p - Vec3d{0, 0.05, 0}, -1.0 * camera.forward()), -0.06);
+      const Vec3d a = is_pin ? pin : line.a, b = is_pin ? pin : line.b;
+      const Vec3d nearest = norm(p - a) < norm(p - b) ? a : b;
+      EXPECT_GT(dot(p - nearest, camera.eye() - nearest), 0);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include "app/common/dressing_progress.h"
 #include "app/common/headless.h"
 #include "app/common/options.h"
+#include "app/common/recording_file.h"
 
 namespace icloth {
 
@@ -19,8 +20,7 @@ int run_replay(const ReplayOptions& options) {
       open_scene_showing(recording.scene, recording.overrides, job.origin, options.quiet, limits);
   check_recording(recording, *job.scene, options.recording);
 
-  for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32})
-    if (build_name(build) == recording.build) job.build = build;
+  job.build = recorded_build(recording);
 
   // Another device may be asked for; the precision stays that of the recording.
   if (!options.device.empty() || job.build == Build::cuda32) {

@@ -42,19 +42,6 @@ ViewOptions options_for(const ViewOptions& first, const std::string& scene) {
   return options;
 }
 
-/// The build that made a recording, on which its steps give the same bits.
-Build recorded_build(const Recording& recording, const std::string& path) {
-  for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32}) {
-    std::string reason;
-    if (build_name(build) != recording.build) continue;
-    if (build_available(build, &reason)) return build;
-    throw InputError(path + ": it was recorded on " + recording.build +
-                     ", which is not available: " + reason);
-  }
-  throw InputError(path + ": build: \"" + recording.build +
-                   "\" is none, expected cpu32, cpu64 or cuda32");
-}
-
 /// One window, in which one scene after the other is opened.
 class WindowProgram {
  public:
@@ -75,6 +62,8 @@ class WindowProgram {
       try {
         next = open(options_for(first_, *next));
       } catch (const InputError& error) {
+        next = screen_.choose(error.what(), *next);
+      } catch (const DeviceError& error) {
         next = screen_.choose(error.what(), *next);
       }
     }
@@ -98,13 +87,18 @@ class WindowProgram {
       throw InputError(path +
                        ": --set, --preset and --repair-start do not go with a recording, "
                        "which has settings of its own");
+
+    // Another build would give other bits.
     const Recording recording = load_recording(path);
-    const Build build = recorded_build(recording, path);
+    const Build build = recorded_build(recording);
+    std::string reason;
+    if (!build_available(build, &reason))
+      throw DeviceError(path + ": it was recorded on " + recording.build +
+                        ", which is not available: " + reason);
+
     ViewOptions with_run = options;
     with_run.simulation.scene = recording.scene;
     with_run.simulation.overrides = recording.overrides;
-    with_run.simulation.preset.clear();
-    with_run.simulation.repair_start = false;
     with_run.recorded = recording.steps;
     return open_scene_of(with_run, build,
                          [&](const Scene& scene) { check_recording(recording, scene, path); });

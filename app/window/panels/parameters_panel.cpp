@@ -42,6 +42,7 @@ std::string heading(const std::string& group) {
       {"grab", "Hands"},
   };
   if (const auto found = kHeadings.find(group); found != kHeadings.end()) return found->second;
+
   std::string text = group;
   for (char& c : text) {
     if (c == '_') c = ' ';

@@ -110,13 +110,21 @@ void draw_slowest(PanelContext& context) {
   ImGui::TextUnformatted("Slowest steps");
   if (!ImGui::BeginTable("##slowest", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit))
     return;
+
+  // A run in which a step was refused has recorded more steps than it has made.
+  const bool are_places = static_cast<Count>(context.state.history) == context.state.step;
   for (const StepReport& report : context.stages.slowest()) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     const std::string step = std::to_string(report.step);
-    if (ImGui::Selectable(step.c_str(), false, ImGuiSelectableFlags_SpanAllColumns))
+    const ImGuiSelectableFlags flags =
+        ImGuiSelectableFlags_SpanAllColumns | (are_places ? 0 : ImGuiSelectableFlags_Disabled);
+    if (ImGui::Selectable(step.c_str(), false, flags))
       context.session.go(static_cast<std::size_t>(std::max<Count>(0, report.step - 1)));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("click: go to the state before this step");
+    if (are_places && ImGui::IsItemHovered())
+      ImGui::SetTooltip("click: go to the state before this step");
+
+    // What it took, and why, follows its number.
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%.3g ms", report.ms_total);
     ImGui::TableNextColumn();

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/scene/input.h"
 #include "tests/support/temporary_folder.h"
 
 namespace icloth {
@@ -19,6 +18,14 @@ TEST(RecordingFile, IsToldFromOtherFiles) {
   EXPECT_FALSE(is_recording(ICLOTH_TEST_FOLDER "/data/drop.json"));
   EXPECT_FALSE(is_recording(ICLOTH_TEST_FOLDER));
   EXPECT_FALSE(is_recording("scarf"));
+}
+
+TEST(RecordingFile, NamesTheBuildThatMadeIt) {
+  Recording recording;
+  for (const Build build : {Build::cpu32, Build::cpu64, Build::cuda32}) {
+    recording.build = build_name(build);
+    EXPECT_EQ(recorded_build(recording), build);
+  }
 }
 
 }  // namespace

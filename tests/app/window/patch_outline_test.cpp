@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
+#include "kernels/index.h"
 #include "tests/support/small_scenes.h"
 
 namespace icloth {
@@ -40,6 +42,10 @@ class PatchOutline : public ::testing::Test {
   const World world_ = make_world(scene_);
   std::vector<Vec3f> positions_ = start();
 
+  std::vector<LineSegment> outline(const HeldHandle& handle, double share = 0) const {
+    return patch_outline(world_, positions_, handle, {&share, 1});
+  }
+
   std::vector<Vec3f> start() const {
     std::vector<Vec3f> positions;
     for (const Cloth& cloth : scene_.cloths)
@@ -49,10 +55,8 @@ class PatchOutline : public ::testing::Test {
 };
 
 TEST_F(PatchOutline, IsACircleOfTheRadiusAtRest) {
-  const auto lines = patch_outline(world_, positions_, hand(0.1));
-  const Vec3d centre =
-      scene_.cloths[0]
-          .mesh.positions[static_cast<std::size_t>(scene_.cloths[0].mesh.faces[2550][0])];
+  const auto lines = outline(hand(0.1));
+  const Vec3d centre = scene_.cloths[0].mesh.positions[at(scene_.cloths[0].mesh.faces[2550][0])];
   EXPECT_NEAR(length(lines), 2 * std::numbers::pi * 0.1, 0.01);
   for (const LineSegment& line : lines) {
     EXPECT_NEAR(norm(line.a - centre), 0.1, 1e-3);
@@ -62,15 +66,21 @@ TEST_F(PatchOutline, IsACircleOfTheRadiusAtRest) {
 
 TEST_F(PatchOutline, IsSmallerWhereThePullIsLarger) {
   // (1 − (d/r)²)² is a half at 0.541 r.
-  const auto lines = patch_outline(world_, positions_, hand(0.1), 0.5);
+  const auto lines = outline(hand(0.1), 0.5);
   EXPECT_NEAR(length(lines), 2 * std::numbers::pi * 0.0541, 0.01);
+}
+
+TEST_F(PatchOutline, HasALineForEachShare) {
+  const double both[] = {0, 0.5};
+  const auto lines = patch_outline(world_, positions_, hand(0.1), both);
+  EXPECT_NEAR(length(lines), length(outline(hand(0.1))) + length(outline(hand(0.1), 0.5)), 1e-9);
 }
 
 TEST_F(PatchOutline, FollowsTheFoldsOfTheCloth) {
   // Rolled round an axis along z, the rim is as long as before and nowhere flat.
-  const double flat = length(patch_outline(world_, positions_, hand(0.1)));
+  const double flat = length(outline(hand(0.1)));
   for (Vec3f& p : positions_) p = {0.1f * std::sin(p.x / 0.1f), 0.1f * std::cos(p.x / 0.1f), p.z};
-  const auto lines = patch_outline(world_, positions_, hand(0.1));
+  const auto lines = outline(hand(0.1));
   EXPECT_NEAR(length(lines), flat, 0.01 * flat);
   double low = 1, high = -1;
   for (const LineSegment& line : lines) {
@@ -81,11 +91,11 @@ TEST_F(PatchOutline, FollowsTheFoldsOfTheCloth) {
 }
 
 TEST_F(PatchOutline, IsEmptyWhereThereIsNothingToDraw) {
-  EXPECT_TRUE(patch_outline(world_, positions_, hand(0)).empty());
-  EXPECT_TRUE(patch_outline(world_, positions_, hand(2)).empty()) << "all of the cloth is held";
+  EXPECT_TRUE(outline(hand(0)).empty());
+  EXPECT_TRUE(outline(hand(2)).empty()) << "all of the cloth is held";
   HeldHandle none = hand(0.1);
   none.face = world_.cloth_faces;
-  EXPECT_TRUE(patch_outline(world_, positions_, none).empty());
+  EXPECT_TRUE(outline(none).empty());
 }
 
 }  // namespace
